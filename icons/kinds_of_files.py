@@ -3,11 +3,11 @@
 import re
 
 KINDS = {
-    "cue file": (r"cue\s+\d", "give it where FILE is asked for, as in thermicon check FILE"),
+    "cue file": (r"cue\s+\d", "give it where icons are asked for"),
     "study file": (r"\[(stimuli|participants|trials)\]", "thermicon study takes it"),
-    "device file": (r"driven_by\s*=", "--device takes it"),
-    "rig file": (r"(base\s*=|\[\[?(skin|contact|heat_sink|module|thermode)\b)", "--rig takes it"),
-    "table of records": (r"\A(#.*\n|\s)*\[\[record\]\]", "--observer takes it"),
+    "device file": (r"driven_by\s*=", "give it as the device"),
+    "rig file": (r"(base\s*=|\[\[?(skin|contact|heat_sink|module|thermode)\b)", "give it as the rig"),
+    "table of records": (r"\A(#.*\n|\s)*\[\[record\]\]", "give it as the observer"),
 }
 """How a line of each kind begins, which no kind before it has, and where it belongs."""
 HEAD = 20_000
@@ -17,7 +17,7 @@ def other_kind(text: str, expected: str) -> tuple[str, str] | None:
     """What a text is that is not of the `expected` kind, and where it belongs; None where no other kind is plain.
 
     >>> other_kind("# mine\\n[contact]\\narea_cm2 = 4\\n", "study file")
-    ('this is a rig file, not a study file', '--rig takes it')
+    ('this is a rig file, not a study file', 'give it as the rig')
     >>> other_kind("[contact]\\narea_cm2 = 4\\n", "rig file")
     """
     marked = (kind for kind, (mark, _) in KINDS.items() if re.search(rf"(?m)^[ \t]*{mark}", text[:HEAD]))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Literal
 
 from thermicon.icons import Icon
@@ -82,7 +83,7 @@ class Refusal:
     kind: Literal["unsafe", "unreachable", "lossy"]
     cause: str
     tells: tuple[str, ...] = ()
-    changes: Changes = field(default_factory=dict)
+    changes: Changes = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def forcible(self) -> bool:

@@ -24,16 +24,18 @@ _FIELD = re.compile(r"  ([a-z]+) = \{(.*)\},\n")
 _YEAR = re.compile(r"\b(?:19|20)[0-9]{2}\b")
 _RESOLVER = re.compile(r"^(?:https?://(?:dx\.)?doi\.org/|doi:)\s*", re.IGNORECASE)
 
+YEAR = "2026"
+"""Of the release, as in ``CITATION.cff``."""
 Reference = Mapping[str, str]
 """A publication: its ``key``, ``type`` and BibTeX fields, where they were ``seen``, and what is ``unverified``."""
 Source = tuple[str | None, str | None]
 """The ``by`` and the ``doi`` of a set or an icon."""
 
 
-def methods(icons: IconSet, rig_about: str | None = None) -> str:
-    """Return a paragraph for the methods section of a paper: the set, every icon, and the sources.
+def methods(icons: IconSet, rig_about: str | None = None, people: str = "") -> str:
+    """Return two paragraphs for the methods section of a paper: the icons with their sources, and the prediction.
 
-    ``rig_about`` describes the rig, as ``Rig.about`` does; None: no rig is described.
+    ``rig_about`` describes the rig, as ``Rig.about`` does, and ``people`` who is predicted to feel; empty: not told.
     """
     many, control = len(icons) > 1, icons.context.control
     title = f" of the set “{icons.title}”" if icons.title else ""
@@ -51,10 +53,39 @@ def methods(icons: IconSet, rig_about: str | None = None) -> str:
     unsure = [f"{surnames(each)[0]} {each['year']}" for each in cited(icons) if "unverified" in each]
     if unsure:
         said.append(f"[Check before printing: details of {', '.join(unsure)} are unverified in the bibliography.]")
+    by = f"by thermicon {version('thermicon')}{people and f' for {people}'}"
+    second = [f"Temperatures, detection and confusions of the icons are *predicted*, not measured, {by}."]
     if rig_about:
-        said.append(f"The rig was modelled as follows: {_one_line(rig_about)}.")
-    said.append(f"The icons are written in the cue language of thermicon {version('thermicon')}, ")
-    return f"{' '.join(said)}content hash {icons.content_hash[:12]}."
+        second.append(f"The rig was modelled as follows: {_one_line(rig_about)}.")
+    second.append(f"The icons are written in the cue language, content hash {icons.content_hash[:12]}.")
+    return f"{' '.join(said)}\n\n{' '.join(second)}"
+
+
+def bibtex(icons: IconSet) -> str:
+    """Return BibTeX of the software and of what a set cites; of a DOI that the bibliography lacks, what is known.
+
+    >>> from thermicon.icons import load_library
+    >>> print(bibtex(load_library("six-icons")).partition(",")[0])
+    @software{thermicon
+    """
+    own = {"title": "{thermicon}: a workbench for thermal icons", "author": "{The thermicon authors}", "year": YEAR}
+    entries: list[Reference] = [{"type": "software", "key": "thermicon", **own, "version": version("thermicon")}]
+    entries += cited(icons)
+    known = {each.get("doi", "").lower() for each in entries}
+    dois = {plain_doi(doi): by or "" for by, doi in sources(icons) if doi}
+    entries += [
+        {"type": "misc", "key": re.sub(r"\W+", "-", doi), "note": by, "doi": doi}
+        for doi, by in dois.items()
+        if doi.lower() not in known
+    ]
+    return "\n\n".join(map(_entry, entries))
+
+
+def _entry(each: Reference) -> str:
+    fields = {name: text for name, text in each.items() if name not in ("type", "key", "seen", "unverified") and text}
+    lines = [f"  {name} = {{{text}}},\n" for name, text in fields.items()]
+    doubt = f"% to be checked: {each['unverified']}\n" if "unverified" in each else ""
+    return f"{doubt}@{each['type']}{{{each['key']},\n{''.join(lines)}}}"
 
 
 def counted(count: int, noun: str) -> str:

@@ -35,7 +35,7 @@ from .options import (
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
-    from thermicon.perception import Goal
+    from thermicon.perception import Goal, Ranking
     from thermicon.perception.selection.frontier import Frontier
     from thermicon.perception.selection.search import SearchResult
 
@@ -49,6 +49,7 @@ def improve_command(
     files: FileNames,
     crowd: CrowdOptions,
     rig: RigOptions,
+    figure: FigureOptions,
     choose: Annotated[int | None, opt("N", "Choose the best N icons.", 2, MOST_CHOSEN)] = None,
     up_to: Annotated[int | None, opt("N", "Choose the best 2, 3, … N icons, as a table.", 2, MOST_CHOSEN)] = None,
     goal: Goals = None,
@@ -111,7 +112,7 @@ def improve_command(
     outputs = output or []
     for path in outputs:
         check_output(path, kinds, "what this finds")
-    check_separate(files, outputs)
+    check_separate(files, [*outputs, figure.figure])
     if searched and len(files) > 1:
         raise usage("one file is searched; join its families into one set", "FILE")
     where = rig.load(icons, files[0])
@@ -129,13 +130,17 @@ def improve_command(
                 FigureOptions(path).write(tried.plot().figure)
             else:
                 write_frame(tried.to_frame(), path)
+        if figure.figure is not None:
+            figure.write(tried.plot().figure)
         told = frontier_report(tried, icons.title, after_choices(tried, command, written))
     elif searched:
         count = USUAL_EVALUATIONS if evaluations is None else evaluations
         found = _searched(icons, where, outputs, count=choose, objective=what, evaluations=count, **how)
         for path in outputs:
             write_text(str(found.found), path)
-        told = [] if STDOUT in outputs else beside_start(found, icons, where, how, command, written)
+        told = []
+        if STDOUT not in outputs or figure.figure is not None:
+            told = beside_start(found, icons, where, how, command, written, figure)
     else:
         made = chosen(icons, where, choose, what, must, edits, how)
         for path in outputs:
@@ -143,6 +148,8 @@ def improve_command(
                 write_text(str(_written(icons, made.choice.icons, where)), path)
             else:
                 write_text(made.to_json() + "\n", path)
+        if figure.figure is not None:
+            figure.write_set(made.ranking if made.choice is None else _alone(made.choice.icons, icons, where, how))
         following = after_choice(made, command, written)
         told = rank_report(made, icons.title, cures(made.ranking, icons, where), following)
     if STDOUT not in outputs:
@@ -251,10 +258,24 @@ def _written(icons: IconSet, names: Sequence[str], rig: Rig) -> IconSet:
     return chosen_set(icons, names, rig.site)
 
 
+def _alone(names: Sequence[str], icons: IconSet, rig: Rig, how: dict[str, Any]) -> Ranking:
+    """Rank the chosen icons as the set that they are then: nobody names an icon that is not in it."""
+    from thermicon.perception import rank
+
+    asked = {name: value for name, value in how.items() if name != "goal"}
+    return rank(_written(icons, names, rig), rig, **asked, parameters=0)
+
+
 def beside_start(
-    found: SearchResult, icons: IconSet, rig: Rig, how: dict[str, Any], command: Command, written: str | None
+    found: SearchResult,
+    icons: IconSet,
+    rig: Rig,
+    how: dict[str, Any],
+    command: Command,
+    written: str | None,
+    figure: FigureOptions,
 ) -> list[Block]:
-    """Rank the found set and its start as the search did, and judge both by the goal."""
+    """Rank the found set and its start as the search did, judge both by the goal, and draw the found one."""
     from thermicon.icons import IconSet
     from thermicon.perception import rank
     from thermicon.perception.selection.goal_result import judge_goal
@@ -265,5 +286,6 @@ def beside_start(
         asked["parameters"] = 0
     with progress_bar("ranking") as bar:
         rankings = [rank(each, rig, **asked, progress=bar) for each in (start, found.found)]
+    figure.write_set(rankings[1])
     before, after = (SetReport(each, goal=None if goal is None else judge_goal(goal, each)) for each in rankings)
     return search_report(found, before, after, icons.title, after_choice(after, command, written))

@@ -13,7 +13,7 @@ from ..files.outputs import check_output
 from ..messages import load_rig, note, usage
 from ..report.blocks import grid
 from ..report.terminal import show
-from .options import RigOptions, opt, read_set, write_text
+from .options import CrowdOptions, RigOptions, flag, opt, read_set, write_text
 
 
 def list_command(
@@ -23,11 +23,17 @@ def list_command(
         typer.Argument(metavar="icons|rigs|devices|formats", show_default=False, help="What to list.  [default: all]"),
     ] = None,
     cite: Annotated[
-        str | None, opt("FILE", "Instead: a paragraph for the methods section, of --rig too if it is given.")
+        str | None,
+        opt(
+            "FILE", "Instead: two paragraphs for the methods section: icons, and prediction with --rig if it is given."
+        ),
     ] = None,
+    bibtex: Annotated[bool, flag("--bibtex", "With --cite: BibTeX of the program and of the set's sources.")] = False,
     copy: Annotated[
         tuple[str, Path] | None,
-        opt("NAME FILE", "Instead: write a shipped set (.cue), rig (with --set) or device (.toml) to a new file."),
+        opt(
+            "NAME FILE", "Instead: write a shipped set (.cue), rig (with --set), device or study (.toml) to a new file."
+        ),
     ] = None,
 ) -> None:
     """List shipped icon sets, rigs, devices and file formats of drives; cite them, or copy one to start from."""
@@ -37,8 +43,10 @@ def list_command(
         raise usage("applies to a copy of a rig, or to the paragraph of --cite", "--set")
     if [what, cite, copy].count(None) < 2:
         raise usage("list, --cite and --copy are different things: ask for one of them", "--cite" if cite else "--copy")
+    if bibtex and cite is None:
+        raise usage("belongs to --cite FILE", "--bibtex")
     if cite is not None:
-        cite_file(cite, rig)
+        cite_file(cite, rig, bibtex)
     elif copy is not None:
         copy_shipped(*copy, rig.changes)
     else:
@@ -49,18 +57,22 @@ def list_command(
             shown[each]()
 
 
-def cite_file(file: str, rig: RigOptions) -> None:
-    """Print the methods paragraph of a file, with a rig if given."""
+def cite_file(file: str, rig: RigOptions, as_bibtex: bool) -> None:
+    """Print the methods paragraphs of a file, with a rig if given, or its BibTeX."""
     from thermicon.circuit.rig.rig_words import rig_summary
-    from thermicon.icons.files.cite import methods
+    from thermicon.icons.files.cite import bibtex, methods
 
     icons = read_set([file])
     where = rig.load(icons, file) if rig.given else None
-    typer.echo(methods(icons, None if where is None else rig_summary(where, for_methods=True)))
+    about = None if where is None else rig_summary(where, for_methods=True)
+    crowd = f"{CrowdOptions.people} virtual people, seed {CrowdOptions.seed}"
+    typer.echo(bibtex(icons) if as_bibtex else methods(icons, about, crowd))
+    if not as_bibtex:
+        note(f"note: {crowd} are what rank takes by default; state those of your command")
 
 
 def copy_shipped(name: str, output: Path, changes: Sequence[str] = ()) -> None:
-    """Write the file of a shipped set, rig or device under a new name; what is there already is kept.
+    """Write the file of a shipped set, rig, device or study under a new name; what is there already is kept.
 
     A rig with changes is called by its file.
     """
@@ -71,14 +83,17 @@ def copy_shipped(name: str, output: Path, changes: Sequence[str] = ()) -> None:
     from thermicon.icons.files.shipped import library_names
     from thermicon.icons.near_words import did_you_mean
 
+    from ..study.study_file import SHIPPED
+
     kinds = (
-        (library_names(), "icons", "library", ".cue"),
-        (rig_names(), "circuit", "rigs", ".toml"),
-        (device_names(), "circuit", "devices", ".toml"),
+        (library_names(), "icons", "library", "{}.cue"),
+        (rig_names(), "circuit", "rigs", "{}.toml"),
+        (device_names(), "circuit", "devices", "{}.toml"),
+        (("study", "example"), "notebooks", "data", SHIPPED),
     )
-    for names, package, folder, ending in kinds:
+    for names, package, folder, file in kinds:
         if name in names:
-            check_output(output, (ending,), "a copy of it")
+            check_output(output, (Path(file).suffix,), "a copy of it")
             if output.exists():
                 raise OutputError(f"{output} already exists and was kept; give another name")
             if changes and folder != "rigs":
@@ -87,11 +102,13 @@ def copy_shipped(name: str, output: Path, changes: Sequence[str] = ()) -> None:
                 load_rig(name, changes).save(output, output.stem)
                 note(f"wrote {output}")
                 return
-            text = resources.files(f"thermicon.{package}").joinpath(folder, name + ending).read_text(encoding="utf-8")
+            text = (
+                resources.files(f"thermicon.{package}").joinpath(folder, file.format(name)).read_text(encoding="utf-8")
+            )
             write_text(text, output)
             return
-    near = [*library_names(), *rig_names(), *device_names()]
-    raise usage(f"{name!r} is not shipped; {did_you_mean(name, near)}", "--copy")
+    known = [each for names, *_ in kinds for each in names]
+    raise usage(f"{name!r} is not shipped; {did_you_mean(name, known)}", "--copy")
 
 
 def show_rigs() -> None:

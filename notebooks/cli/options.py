@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
+    from thermicon.perception import Ranking
     from thermicon.perception.observer.observer_model import ObserverModel
 
 MOST_PEOPLE, MOST_DRAWS, LARGEST_SEED = 100_000, 10_000, 2**32 - 1
@@ -228,6 +229,13 @@ class FigureOptions(Options):
     def look(self) -> Look:
         """How the figure is drawn."""
         return SCREEN if self.paper is None else Look(read_width_mm(self.paper))
+
+    def write_set(self, ranking: Ranking) -> None:
+        """Write the figure of a set: distances and confusions; nothing where none was asked for."""
+        if self.figure is not None:
+            from ..figures.set_figures import set_figure
+
+            self.write(set_figure(ranking, stacked=self.look.narrow))
 
     def write(self, drawn: Any) -> None:
         """Write a figure to its file, and say so; nothing where none was asked for."""

@@ -12,6 +12,7 @@ from thermicon.icons.atomic import OutputError, complete_or_absent
 from ..files.outputs import STDOUT, check_output, check_separate
 from ..messages import note, noted, progress_bar, usage
 from .options import (
+    FigureOptions,
     FileNames,
     Json,
     ObserverOptions,
@@ -42,6 +43,7 @@ def pilot_command(
     files: FileNames,
     crowd: ObserverOptions,
     rig: RigOptions,
+    figure: FigureOptions,
     answers: Annotated[
         list[Path] | None,
         out(
@@ -103,20 +105,22 @@ def pilot_command(
             "a sealed prediction stands beside the cue files it was made of, one at a time, with --answers", "FILE"
         )
     planned = {"--participants": participants, "--trials": trials, "--wanted": wanted}
-    for option, value in (planned if answers is not None else {"--keep": keep, "--column": column}).items():
+    given = {"--keep": keep, "--column": column, "--figure": figure.figure}
+    for option, value in (planned if answers is not None else given).items():
         if value is not None:
             raise usage("belongs to a plan, before there are answers" if answers else "needs --answers FILE", option)
     if json is not None:
         check_output(json, (".json",), "JSON")
     if answers is not None and sealed:
-        if keep is not None:
-            raise usage("belongs to answers without a sealed prediction, which is scored as it is", "--keep")
+        if keep is not None or figure.figure is not None:
+            option = "--keep" if keep is not None else "--figure"
+            raise usage("belongs to answers without a sealed prediction, which is scored as it is", option)
         open_sealed(
             Path(sealed[0]), answers[0], theirs_of(column), [name for name in files if name not in sealed], rig, json
         )
         return
     if answers is not None:
-        condition(answers[0], theirs_of(column), files, crowd, rig, keep, draws or USUAL_DRAWS, json)
+        condition(answers[0], theirs_of(column), files, crowd, rig, figure, keep, draws or USUAL_DRAWS, json)
         return
     people = _numbers(participants or PARTICIPANTS, "--participants", 2, MOST_PARTICIPANTS)
     times = _numbers(trials or TRIALS, "--trials", 1, MOST_TRIALS)
@@ -185,6 +189,7 @@ def condition(
     files: Sequence[str],
     crowd: ObserverOptions,
     rig: RigOptions,
+    figure: FigureOptions,
     keep: Path | None,
     draws: int,
     json: Path | None,
@@ -196,7 +201,7 @@ def condition(
         if keep == STDOUT:
             raise usage("- is not a file; give a name such as lab.toml", "--keep")
         check_output(drawn, (".csv",), "a table of draws")
-    check_separate([answers, *files, *([crowd.observer] if crowd.observer else [])], [json, keep, drawn])
+    check_separate([answers, *files, *([crowd.observer] if crowd.observer else [])], [json, keep, drawn, figure.figure])
     if there := [str(path) for path in (keep, drawn) if path is not None and path.exists()]:
         raise OutputError(f"{' and '.join(there)} already there and kept; give --keep another name, or move them away")
     from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
@@ -221,6 +226,10 @@ def condition(
         )
     if json is not None:
         write_text(found.to_json() + "\n", json)
+    if figure.figure is not None:
+        from ..figures.set_figures import observed_figure
+
+        figure.write(observed_figure(found, stacked=figure.look.narrow))
     last = KEEP_IT
     if keep is not None and drawn is not None:
         _keep(found, keep, drawn)

@@ -170,10 +170,7 @@ def rank_command(
     found = report_of(icons, where, draws, warnings=warnings, workers=here, **asked)
     if json is not None and json != STDOUT:
         write_text(found.to_json() + "\n", json)
-    if figure.figure is not None:
-        from ..figures.set_figures import set_figure
-
-        figure.write(set_figure(found.ranking, stacked=figure.look.narrow))
+    figure.write_set(found.ranking)
     near = cures(found.ranking, icons, where) if report is not None or json != STDOUT else {}
     if report is not None:
         from ..report.rank_page import report as page

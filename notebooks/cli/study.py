@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,6 +17,12 @@ from .options import out
 if TYPE_CHECKING:
     from ..study.build import Plan
 
+LONG_S = 3600.0
+LONG = (
+    "{minutes} min each is long for one visit: take fewer trials.repetitions or trials.blocks, a shorter gap "
+    "(timing.gap_s, or more timing.carry_over_d_prime), or part the icons or blocks into two studies"
+)
+"""Attention and answers suffer in sessions of more than an hour; ways to a shorter one."""
 KEPT = "give another folder with -o, such as -o study-2"
 
 
@@ -80,6 +87,9 @@ def report_lines(plan: Plan) -> list[str]:
     people = "1 participant" if len(labels) == 1 else f"{len(labels)} participants"
     kind = f"{study.trials.order} order" if study.trials else "QUEST+"
     minutes = number(planned_s(plan) / 60.0)
+    cautions = list(judged.cautions)
+    if planned_s(plan) > LONG_S:
+        cautions.insert(0, LONG.format(minutes=minutes))
     lines = [
         study.title or study.name,
         f"  trials    {people}, {plays} plays each, {kind}, seed {plan.materials.seed}",
@@ -90,6 +100,7 @@ def report_lines(plan: Plan) -> list[str]:
         before, after = gap.carried_by
         left = number(gap.carry_over_d_prime, 2)
         lines.append(f"            the icon before still changes it by d′ = {left} at most ({after} after {before})")
+    lines += _gap_rows(plan)
     lines += [
         f"  landing   {number(landing.landing_s)} s{'' if landing.derived else ', given'}: skin that arrives "
         f"{number(landing.from_K)} K off is then {number(landing.left_K, 2)} K off "
@@ -112,7 +123,22 @@ def report_lines(plan: Plan) -> list[str]:
         colours = dict.fromkeys(blocks.colour for blocks in judged.after_breaks.values())
         blocks_from_rest = "with each block from rest, as after a long break"
         lines.append(f"            (orders without their breaks); {blocks_from_rest}: {' and '.join(colours)}")
-    return [*lines, *(f"  caution   {text}" for text in judged.cautions)]
+    return [*lines, *(f"  caution   {text}" for text in cautions)]
+
+
+def _gap_rows(plan: Plan) -> list[str]:
+    """Gaps beside the chosen one, which is marked: what carries over, and how long a participant would sit."""
+    from ..study.contents import planned_s
+
+    gap = plan.judged.gap
+    known = {**dict(gap.tried), gap.gap_s: gap.carry_over_d_prime}
+    shorter, longer = ([each for each in sorted(known) if sign * (each - gap.gap_s) > 0] for sign in (-1, 1))
+    rows = ["                gap  carry-over  minutes"] if gap.tried else []
+    for each in [*shorter[:1], gap.gap_s, *longer[1::2][:2]] if gap.tried else []:
+        sat = replace(plan, judged=replace(plan.judged, gap=replace(gap, gap_s=each)))
+        left, mark = number(known[each], 2), "*" if each == gap.gap_s else " "
+        rows.append(f"          {mark} {number(each):>5} s  d′ {left:>7}  {number(planned_s(sat) / 60.0):>7}")
+    return rows
 
 
 def _colours(plan: Plan) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from .study_file import Study
 
+NUMBER = re.compile(r"\d+(\.\d+)?")
 ALL_JUDGED = 4
 """Participants up to whom every session is judged in all corners; of more, those whose run is the most extreme."""
 
@@ -52,11 +54,14 @@ class Judged:
 
     @property
     def cautions(self) -> tuple[str, ...]:
-        """Soft limits that a session exceeds, each with whose session it is; those after breaks where they are new."""
+        """Soft limits that a session exceeds, each once with whose sessions; those after breaks where they are new."""
+        whose: dict[str, tuple[str, list[str]]] = {}
+        for label, session in self.sessions.items():
+            for text in session.cautions:
+                whose.setdefault(NUMBER.sub("#", text), (text, []))[1].append(label)
         lines = [
-            f"session of participant {label}: {text}"
-            for label, session in self.sessions.items()
-            for text in session.cautions
+            f"session of participant {first}{' (alike ' * bool(others)}{', '.join(others)}{')' * bool(others)}: {text}"
+            for text, (first, *others) in whose.values()
         ]
         for label, blocks in self.after_breaks.items():
             known = {(finding.quantity, finding.upper) for finding in self.sessions[label].findings}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,13 +30,15 @@ LONGEST_LANDING_S = 1800.0
 class Gap:
     """The least time between icons in s, why it is that long, and what the icon before still changes after it.
 
-    `carry_over_d_prime` is the largest difference from the icon by itself, after any other icon, in d′ from memory.
+    `carry_over_d_prime` is the largest difference from the icon by itself, after any other icon, in d′ from memory;
+    `tried` has it beside every gap that was looked at.
     """
 
     gap_s: float
     reason: str
     carry_over_d_prime: float
     carried_by: tuple[str, str] | None
+    tried: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,12 +80,13 @@ def find_gap(
     from thermicon.perception.kernels.parallel import step_counter
 
     wanted, step = timing.carry_over_d_prime, step_counter(progress, len(GAPS_S))
+    seen: dict[float, tuple[float, tuple[str, str]]] = {}
 
-    @cache
     def carried(gap_s: float) -> tuple[float, tuple[str, str]]:
-        found = carried_over(icons, rig, gap_s, held)
-        step()
-        return found
+        if gap_s not in seen:
+            seen[gap_s] = carried_over(icons, rig, gap_s, held)
+            step()
+        return seen[gap_s]
 
     if timing.gap_s is not None:
         d_prime, pair = carried(timing.gap_s)
@@ -97,7 +99,8 @@ def find_gap(
             f"{worst:.2g}; allow more, or give timing.gap_s"
         )
     d_prime, pair = carried(gap_s)
-    return Gap(gap_s, f"carry-over falls below d′ = {wanted:g}", d_prime, pair)
+    tried = tuple((each, carried(each)[0]) for each in sorted(seen))
+    return Gap(gap_s, f"carry-over falls below d′ = {wanted:g}", d_prime, pair, tried)
 
 
 def shortest_gap_s(passes: Callable[[float], bool]) -> float | None:

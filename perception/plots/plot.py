@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from functools import singledispatch
 from statistics import NormalDist
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -146,12 +147,12 @@ def plot_observed(found: Observed[Any, Any], ax: Axes | None = None) -> Axes:
         shares = [getattr(each, when).proportion_correct for each in found.predictions]
         middle, low, high = 100.0 * np.array(shares).T
         axes.errorbar(middle, places + shift, xerr=(middle - low, high - middle), fmt="o", color=colour, label=when)
-    axes.set_yticks(places, [each.before.title or "set" for each in found.predictions])
-    axes.set_ylim(len(places) - 0.5, -0.5)
+    axes.set_yticks(places, [fill(each.before.title or "set", 20) for each in found.predictions])
+    axes.set_ylim(len(places) - 0.5, -1.0)
     axes.spines[["top", "right", "left"]].set_visible(False)
-    axes.set_xlabel("correct (%), mean over people and 95 % of laboratories")
-    axes.set_title("Prediction before and after the data", loc="left")
-    axes.legend(frameon=False)
+    axes.set_xlabel("correct (%), mean over people\nand 95 % of laboratories")
+    axes.set_title("Correct before and after the data", loc="left")
+    axes.legend(frameon=False, loc="upper center", ncols=2)
     return axes
 
 

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.builders import missing
 from thermicon.icons import IconSet, load_library, parse
-from thermicon.icons.files.cite import cited, methods, references
+from thermicon.icons.files.cite import YEAR, bibtex, cited, methods, references
 
 ROOT = Path(__file__).parents[3]
 # Every DOI that a page was seen to show; one that is added to the bibliography is added here with the page.
@@ -65,7 +66,19 @@ def test_methods_of_the_six_icons() -> None:
     )
     assert "repeat 2 { cool by 3 °C at 3 °C/s, hold for 1 s, return at 3 °C/s, rest for 1 s }. Sources, as the" in said
     assert "[Check before printing: details of Singhal 2015, Singhal 2018 are unverified in the bibliography.]" in said
-    assert said.endswith(f"content hash {load_library('six-icons').content_hash[:12]}.") and "\n" not in said
+    assert said.endswith(f"content hash {load_library('six-icons').content_hash[:12]}.")
+    icons, predicted = said.split("\n\n")
+    assert "*predicted*, not measured" in predicted and "predicted" not in icons
+
+
+def test_bibtex_has_the_program_and_every_source_with_what_is_not_verified() -> None:
+    said = bibtex(made('icon a by "Singhal, 2015" doi "doi:10.1/x" { hold for 1 s }'))
+    assert [line for line in said.splitlines() if line.startswith("@")] == ["@software{thermicon,", "@misc{10-1-x,"]
+    assert missing(["doi = {10.1/x}", "note = {Singhal, 2015}", "year = {2026}"], said) == []
+    assert f"date-released: {YEAR}-" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    said = bibtex(load_library("six-icons"))
+    assert said.count("@") == 1 + len(cited(load_library("six-icons"))) and "seen =" not in said
+    assert said.count("% to be checked: ") == sum("unverified" in each for each in cited(load_library("six-icons")))
 
 
 def test_methods_of_a_family_and_of_a_current() -> None:

@@ -75,8 +75,8 @@ def test_without_families_and_questions_every_close_pair_gets_an_edit(ranked: Ca
 def test_search_writes_a_set_that_can_be_ranked(cli: Cli, families: Path, tmp_path: Path) -> None:
     out = tmp_path / "found.cue"
     asked = ("improve", families, "--choose", 3, "--evaluations", 40, "--people", 6, "--seed", 4)
-    said = cli.good(*asked, "-o", out)
-    assert f"wrote {out}" in said.stderr
+    said = cli.good(*asked, "-o", out, "--figure", tmp_path / "found.png")
+    assert f"wrote {out}" in said.stderr and (tmp_path / "found.png").stat().st_size > 10_000
     found = parse(out.read_text(encoding="utf-8"))
     assert len(found) == 3
     assert all("seed 4" in icon.metadata.tags for icon in found)
@@ -104,13 +104,14 @@ def test_search_says_what_a_goal_lacks(cli: Cli, families: Path) -> None:
 
 def test_a_row_for_each_number_of_icons(cli: Cli, tmp_path: Path) -> None:
     out, picture = tmp_path / "out.csv", tmp_path / "out.png"
-    said = cli.good("improve", "six-icons", "--people", 4, "--up-to", 4, "--intervals", 4, "-o", out, "-o", picture)
+    asked = ("improve", "six-icons", "--people", 4, "--up-to", 4, "--intervals", 4)
+    said = cli.good(*asked, "-o", out, "-o", picture, "--figure", tmp_path / "same.png")
     frame = pd.read_csv(out)
     assert list(frame["icons"]) == [2, 3, 4]
     words = " ".join(said.stdout.split())
     assert "icons correct 95 % of people d′ bits time energy" in words
     assert "The 4: " + ", ".join(frame["names"][2].split()) in words
-    assert picture.stat().st_size > 10_000
+    assert picture.stat().st_size > 10_000 and picture.read_bytes() == (tmp_path / "same.png").read_bytes()
 
 
 @pytest.mark.parametrize(

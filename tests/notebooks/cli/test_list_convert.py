@@ -8,6 +8,7 @@ import pytest
 from tests.notebooks.conftest import Cli
 from thermicon.circuit import Device, Rig
 from thermicon.icons import load_library, read_cue, to_json
+from thermicon.notebooks.study.study_file import study_text
 
 
 @pytest.mark.parametrize("what", ["icons", "rigs", "devices", "formats"])
@@ -20,13 +21,17 @@ def test_each_kind_is_listed_within_80_columns(cli: Cli, what: str) -> None:
     assert max(len(line) for line in said.stdout.splitlines()) <= 80
 
 
-@pytest.mark.parametrize(("name", "ending"), [("six-icons", ".cue"), ("forearm", ".toml"), ("dac-16", ".toml")])
+@pytest.mark.parametrize(
+    ("name", "ending"), [("six-icons", ".cue"), ("forearm", ".toml"), ("dac-16", ".toml"), ("study", ".toml")]
+)
 def test_a_copy_reads_as_what_was_copied_and_replaces_nothing(cli: Cli, tmp_path: Path, name: str, ending: str) -> None:
     path = tmp_path / f"mine{ending}"
     said = cli("list", "--copy", name, path)
     assert (said.exit_code, said.stdout, said.stderr) == (0, "", f"wrote {path}\n")
     if ending == ".cue":
         assert read_cue(path).content_hash == load_library(name).content_hash
+    elif name == "study":
+        assert study_text(path) == study_text("example")
     else:
         kind: Any = Rig if name == "forearm" else Device
         assert kind.load(path) == kind.load(name)

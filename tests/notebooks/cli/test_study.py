@@ -81,6 +81,7 @@ def test_a_derived_gap_grows_until_it_is_safe(tmp_path: Path, cli: Cli) -> None:
     )
     said = cli.good("study", path, "-o", tmp_path / "made")
     assert "the shortest pause that is safe" in said.stdout
+    assert said.stdout.count(" * ") == 1 and "long for one visit" not in said.stdout
 
 
 @pytest.mark.slow
@@ -141,6 +142,7 @@ def test_a_thermode_is_judged_by_its_gate_over_the_whole_session(tmp_path: Path,
     text = "\n".join(lines).replace("gap_s = 10", "gap_s = 300").replace("repetitions = 2", "repetitions = 4")
     said = cli.good("study", write_study(tmp_path, text), "-o", tmp_path / "out")
     assert "judged by its drives alone, repeated in any order: a thermode has no current" in said.stdout
+    assert said.stdout.count("min each is long for one visit") == 1
     sidecar = json.loads((tmp_path / "out" / "dip.json").read_text(encoding="utf-8"))
     assert sidecar["rig"]["changes"] == ["safety.session_min=86.0"], "18 plays of 3 s and 17 gaps of 300 s"
     assert json.loads((tmp_path / "out" / "study.json").read_text(encoding="utf-8"))["plays"] == "tcs2"

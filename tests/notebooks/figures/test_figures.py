@@ -1,5 +1,6 @@
 """Figures for people: one colour and one style of labels everywhere, clocks and what-ifs told."""
 
+import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.collections import PathCollection
@@ -12,11 +13,13 @@ from thermicon.icons import load_library, parse
 from thermicon.notebooks import overview
 from thermicon.notebooks.figures.overview import MOST_LINES, scene_figure
 from thermicon.notebooks.figures.print_figure import restyle
-from thermicon.notebooks.figures.set_figures import set_figure
+from thermicon.notebooks.figures.set_figures import observed_figure, set_figure
 from thermicon.notebooks.figures.style import COOL, WARM
 from thermicon.notebooks.figures.sweep_figure import COOLS, WARMS
 from thermicon.notebooks.timeline.scene import scene
 from thermicon.perception import Percept, perceive, rank
+from thermicon.perception.pilot.observed import observed
+from thermicon.perception.pilot.trials import Trials
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +51,16 @@ def test_the_maps_of_one_icon_are_one_cell() -> None:
     icons = parse("cue 1\nset s { control display }\nicon a { cool by 2 °C at 1 °C/s; hold for 1 s }")
     ranking = rank(icons, Rig.load("thenar"), people=1)
     assert [len(ax.texts) for ax in set_figure(ranking).axes] == [1, 1]
+
+
+@pytest.mark.parametrize("stacked", [False, True])
+def test_observed_answers_stand_beside_the_predicted_ones(stacked: bool) -> None:
+    icons = load_library("six-icons")
+    names = tuple(icon.name for icon in icons)
+    found = observed(Trials(names, ("P",), 5.0 * np.eye(6)[None] + 1.0), icons, "thenar", draws=20)
+    seen, predicted, correct = observed_figure(found, stacked).axes
+    assert {text.get_text() for text in seen.texts} == {"55", "9.1"}
+    assert len(predicted.texts) == 36 and "before and after" in correct.get_title("left")
 
 
 def test_two_maps_below_one_another_name_the_columns_once() -> None:

@@ -36,7 +36,7 @@ def test_a_name_that_cannot_be_is_told_before_anything_is_computed(
     [
         ("conda-meta", "conda install -c conda-forge pyarrow,"),
         ("pipx_metadata.json", "pipx inject thermicon pyarrow,"),
-        ("uv-receipt.toml", "uv tool install thermicon --with pyarrow,"),
+        ("uv-receipt.toml", "uv tool install thermicon -w pyarrow,"),
         ("pyvenv.cfg", f"{sys.executable} -m pip install pyarrow,"),
     ],
 )
