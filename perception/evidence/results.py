@@ -46,15 +46,27 @@ class Constant:
 
 
 @dataclass(frozen=True, slots=True)
-class PredictedRow:
+class OfRow:
+    """What belongs to a row of the likelihood."""
+
+    experiment: str
+    statistic: str
+    channel: str
+
+    @property
+    def row(self) -> Row:
+        """The row of the likelihood."""
+        key = self.experiment, self.statistic, self.channel
+        return next(row for row in load_rows() if row.key == key)
+
+
+@dataclass(frozen=True, slots=True)
+class PredictedRow(OfRow):
     """A published number with its 95 % interval, fitted by each variant, and predicted without its experiment.
 
     Left out, constants are those of the maximum refitted without the experiment, and their error is normal around it.
     """
 
-    experiment: str
-    statistic: str
-    channel: str
     label: str
     unit: str
     published: float
@@ -67,12 +79,6 @@ class PredictedRow:
     left_out_high: float
     score: float
     log_score: float
-
-    @property
-    def row(self) -> Row:
-        """The row of the likelihood."""
-        key = self.experiment, self.statistic, self.channel
-        return next(row for row in load_rows() if row.key == key)
 
     @property
     def log(self) -> bool:
