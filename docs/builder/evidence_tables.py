@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 from table_text import UNITS, markdown, number, signed, span
 
@@ -43,17 +44,16 @@ def experiments_table() -> str:
     return markdown(("key", "experiment", "citation", "licence of code and data", "what was asked", "rows"), lines)
 
 
-def constants_table(mechanisms: Sequence[str] = (), *, sources: bool = True) -> str:
+def constants_table(mechanisms: Sequence[str] = ()) -> str:
     """Constants of the default observer by mechanism; all but offsets of laboratories unless mechanisms are named."""
     rows = [each for each in load_constants() if each.unit != "SD" and (not mechanisms or each.mechanism in mechanisms)]
-    head = ("mechanism", "constant", "value", "95 %", "prior 95 %", "SD left", *(("prior from",) if sources else ()))
+    head = ("mechanism", "constant", "value", "95 %", "prior 95 %", "SD left", "prior from")
     lines, last, order = [], "", [row.mechanism for row in rows]
     for each in sorted(rows, key=lambda each: order.index(each.mechanism)):
         mechanism, last = ("" if each.mechanism == last else f"**{each.mechanism}**"), each.mechanism
         unit = UNITS.get(each.unit, each.unit)
         cells = (mechanism, each.name, f"{number(each.value)} {unit}".strip(), span(each.low, each.high))
-        source = (each.source,) if sources else ()
-        lines.append((*cells, span(each.prior_low, each.prior_high), f"{each.narrowed:.2f}", *source))
+        lines.append((*cells, span(each.prior_low, each.prior_high), f"{each.narrowed:.2f}", each.source))
     return markdown(head, lines)
 
 
@@ -157,9 +157,6 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "predicted": predicted_table,
     "people": people_table,
     "mechanisms": mechanisms_table,
-    "constants of receptors": lambda: constants_table(GROUPS["receptors"]),
-    "constants of sensation": lambda: constants_table(GROUPS["sensation"]),
-    "constants of detection": lambda: constants_table(GROUPS["detection"]),
-    "constants of people": lambda: constants_table(GROUPS["people"]),
+    **{f"constants of {section}": partial(constants_table, own) for section, own in GROUPS.items()},
 }
 """Every table by the name that a page's mark gives."""

@@ -217,10 +217,7 @@ def scores_sentence() -> str:
 
 
 def variants_sentence() -> str:
-    """Mean left-out log score of each variant, their best mixture, and how sure temperature is better than heat flow.
-
-    The standard error is that of a sum over experiments, whose rows share laboratory and people.
-    """
+    """Mean left-out log score of each variant, their best mixture, and how sure temperature beats heat flow."""
     logs = variant_log_scores()
     parts = [
         f"{name} {signed(mean, 2)} (weight {weight:.2f})"

@@ -29,10 +29,7 @@ LONGEST_LANDING_S = 1800.0
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """The least time between icons in s, why it is that long, and what the icon before still changes after it.
-
-    `carry_over_d_prime` is the largest difference from the icon by itself, after any other icon, in d′ from memory.
-    """
+    """The least time between icons in s, why it is that long, and the largest d′ carried over, from which to which."""
 
     gap_s: float
     reason: str
@@ -42,10 +39,9 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class Landing:
-    """How long the hand rests on the display before a block, and what is left of its own temperature by then.
+    """How long the hand rests on the display before a block, and what is then left of its own temperature.
 
-    `left_K` is the largest deviation of skin and receptors at the end, `left_at_10_s_K` after 10 s, for skin that
-    arrives `from_K` warmer or colder than it rests.
+    `left_K` is of skin and receptors at the end, `left_at_10_s_K` after 10 s, for skin that arrives `from_K` off.
     """
 
     landing_s: float
@@ -70,10 +66,7 @@ def carried_over(icons: Sequence[Icon], rig: Rig, gap_s: float, held: bool) -> t
 
 
 def find_gap(icons: Sequence[Icon], rig: Rig, timing: Timing, held: bool) -> Gap:
-    """Return the given gap, or the shortest from which on no icon carries over by more than the wanted d′.
-
-    Raises StudyError where no gap up to 10 min suffices.
-    """
+    """Return the given gap, or the shortest from which on no icon carries over by more than the wanted d′."""
     wanted = timing.carry_over_d_prime
     carried = lru_cache(maxsize=None)(lambda gap_s: carried_over(icons, rig, gap_s, held))
     if timing.gap_s is not None:
@@ -109,10 +102,7 @@ def shortest_gap_s(passes: Callable[[float], bool]) -> float | None:
 
 
 def find_landing(icon: Icon, rig: Rig, timing: Timing, held: bool) -> Landing:
-    """Return the given landing, or the time until a hand that arrives too warm or too cold has settled.
-
-    Raises StudyError where that takes longer than half an hour.
-    """
+    """Return the given landing, or the time until a hand that arrives too warm or too cold has settled."""
     times, away = settling(icon, rig, timing.landing_from_K, held)
     if timing.landing_s is not None:
         seconds = timing.landing_s
@@ -131,8 +121,7 @@ def find_landing(icon: Icon, rig: Rig, timing: Timing, held: bool) -> Landing:
 def settling(icon: Icon, rig: Rig, from_K: float, held: bool) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Seconds after contact, and the largest deviation of skin and receptors in K from where they settle.
 
-    Skin arrives in the steady state of a surface `from_K` warmer or colder than it rests. The display waits at the
-    baseline of the icon; `held`: it stays there, otherwise the resting current flows and the hand warms the module.
+    Skin arrives `from_K` warmer or colder than it rests; the display stays at baseline (`held`), or the current does.
     """
     from thermicon.circuit import Drive, design, simulate_current
     from thermicon.circuit.solver.inverse import baseline_C

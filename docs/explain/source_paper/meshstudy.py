@@ -1,8 +1,4 @@
-"""How much a mesh of the skin matters: graded meshes and fixed elements compared with a mesh-converged solution.
-
-Two comparisons are fair, and both are available: every mesh with the same `current` (as on one rig), and every mesh
-along the same controlled `temperature` with its own current (as a cue prescribes).
-"""
+"""How much a mesh of the skin matters: graded meshes and fixed elements compared with a mesh-converged solution."""
 
 from __future__ import annotations
 
@@ -64,7 +60,7 @@ def usual_meshes(rig: Rig) -> tuple[Mesh, ...]:
 class MeshStudy:
     """Errors of m meshes at both receptor depths; `error_K` (m, 2, rows), `reference_C` (2, rows): cold, then warm.
 
-    `reference_error_K` is what halving the converged mesh still changes; `display_swing_K` what the display did.
+    `reference_error_K` is what halving the converged mesh changes.
     """
 
     stimulus: str
@@ -101,18 +97,12 @@ class MeshStudy:
 
 
 def mesh_study(
-    rig: Rig,
-    cue: Icon | Drive,
-    *,
-    way: str = "current",
-    meshes: Sequence[Mesh] | None = None,
-    rate_Hz: float = 1000.0,
+    rig: Rig, cue: Icon | Drive, *, way: str = "current", meshes: Sequence[Mesh] | None = None, rate_Hz: float = 1000.0
 ) -> MeshStudy:
     """Simulate a cue or a drive on several meshes of a rig's skin, and compare them with a converged one.
 
-    `meshes` are by default the shipped one, coarser and finer ones, and fixed elements. With `way` "current" all get
-    the current designed on the rig as it is; with "temperature" each follows the cue with its own current. Rows and
-    time steps per second are the same for all meshes: at 1000 Hz they do not affect the comparison.
+    With `way` "current" all get the current designed on the rig as it is; with "temperature" each follows the cue
+    with its own. At 1000 Hz rows and time steps do not affect the comparison.
     """
     if way not in WAYS:
         raise RigError(f"way {way!r} is not known; it is one of {', '.join(WAYS)}")

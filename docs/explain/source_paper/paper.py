@@ -68,10 +68,7 @@ def coldest_display_C(rig: Rig) -> float:
 
 
 def distortion(trace: Trace, of_C: Array) -> float:
-    """How far a course is from any trapezoid of the cue's timing: rms misfit in parts of its own step.
-
-    The cue's target, shifted and scaled to fit best, is the trapezoid; 0 is a perfect one.
-    """
+    """How far a course is from the cue's target, shifted and scaled to fit best: rms in parts of its own step."""
     shape = (trace.target_C - trace.target_C[0]) / np.ptp(trace.target_C)
     columns = np.stack([np.ones_like(shape), shape], axis=1)
     fitted = np.linalg.lstsq(columns, of_C, rcond=None)[0]
@@ -114,11 +111,7 @@ class Thermistors:
 
 
 def thermistors(rig: Rig | None = None, *, lateral_m: float | None = None) -> Thermistors:
-    """Put the paper's three thermistors on a rig and play the cue (Figs. 5 and 6).
-
-    `lateral_m` is the distance from the middle of the round insulated patch to skin in contact; None uses the assumed
-    values. The paper gives neither, nor the thermistors' lag: here they have none.
-    """
+    """Play the cue with the paper's three thermistors (Figs. 5 and 6), the third so far from skin in contact."""
     probes: list[dict[str, object]] = [{"name": name, "place": place} for name, place in THERMISTORS]
     rig, cue, pad = (rig or emulator_rig()).with_(probe=probes), cooling_step("skin"), Pad.of(lateral_m)
     likeness = resembles(cue, rig, pad, tail_s=TAIL_S)
