@@ -13,14 +13,7 @@ if not tags.has("staged"):  # type: ignore[name-defined]  # noqa: F821  # a name
 project, author, copyright = "thermicon", "The thermicon authors", "The thermicon authors"
 release = version_of("thermicon")
 
-extensions = [
-    "myst_nb",
-    "sphinx_design",
-    "sphinx_copybutton",
-    "sphinx.ext.autodoc",
-    "sphinx.ext.mathjax",
-    "numpydoc",
-]
+extensions = ["myst_nb", "sphinx_design", "sphinx_copybutton", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "numpydoc"]
 root_doc = "index"
 language = "en"
 smartquotes = False  # two hyphens are an option, not a dash
@@ -57,10 +50,7 @@ suppress_warnings = ["misc.highlighting_failure"]
 
 # Nothing is fetched from elsewhere: the site works from a folder and without a network.
 MATHJAX = "sphinx-mathjax-offline"
-html_static_path = [
-    "builder/static",
-    str(distribution(MATHJAX).locate_file(f"{MATHJAX}/static/mathjax/tex-svg.js")),
-]
+html_static_path = ["builder/static", str(distribution(MATHJAX).locate_file(f"{MATHJAX}/static/mathjax/tex-svg.js"))]
 mathjax_path = "tex-svg.js"
 
 html_theme = "pydata_sphinx_theme"

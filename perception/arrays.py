@@ -1,6 +1,30 @@
-"""The name of the type of arrays."""
+"""Arrays: the name of their type, copies that nobody changes, and the form that kernels take."""
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+
+
+def own_arrays(holder: object, *names: str) -> None:
+    """Replace fields of a frozen object by read-only copies of their own, as float64; for `__post_init__`."""
+    for name in names:
+        own = np.array(getattr(holder, name), dtype=np.float64)
+        own.setflags(write=False)
+        object.__setattr__(holder, name, own)
+
+
+def as_rows(values: ArrayLike) -> tuple[Array, tuple[int, ...]]:
+    """(rows, n_time) read-only view of a contiguous float64 array, and the shape it came in.
+
+    Always read-only, so that kernels are compiled for one kind of array and not for two.
+
+    >>> as_rows([[[1.0, 2.0, 3.0]]])[0].shape
+    (1, 3)
+    """
+    array = np.ascontiguousarray(values, dtype=np.float64)
+    if array.ndim == 0 or array.shape[-1] < 2:
+        raise ValueError(f"a trace needs at least two samples on its last axis, not shape {array.shape}")
+    rows = array.reshape(-1, array.shape[-1]).view()
+    rows.flags.writeable = False
+    return rows, array.shape

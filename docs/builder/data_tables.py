@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from table_text import markdown
+
 from thermicon.circuit.records import Record
 from thermicon.circuit.rig.rules import limit_table
 from thermicon.circuit.rig.uncertainty import uncertainty_table
@@ -32,11 +34,11 @@ def errors() -> str:
 
 def limits_table() -> str:
     """A row for each end of each shipped limit."""
-    head = "| limit of | hard or soft | shipped | key in `[safety]` | can be loosened to |\n|---|---|---|---|---|"
-    return "\n".join([head, *(row for record in limit_table() for end in ("low", "high") for row in _end(record, end))])
+    head = ("limit of", "hard or soft", "shipped", "key in `[safety]`", "can be loosened to")
+    return markdown(head, (row for record in limit_table() for end in ("low", "high") for row in _end(record, end)))
 
 
-def _end(record: Record, end: str) -> Iterator[str]:
+def _end(record: Record, end: str) -> Iterator[tuple[str, ...]]:
     """Yield the row of one end of a limit, if it has that end."""
     value, extra = getattr(record, end), dict(record.extra)
     if value is None:
@@ -48,16 +50,16 @@ def _end(record: Record, end: str) -> Iterator[str]:
     loosest = f"{signed(float(str(bound)))}{unit}" if bound is not None else "only tightened" if key else "fixed"
     what = record.quantity + (f", {record.conditions}" if record.unit == "K" else "")
     limit = f"{sign}{'' if sign == '±' else ' '}{signed(value)}{unit}"
-    yield f"| {what} | {extra['severity']} | {limit} | {f'`{key}`' if key else '—'} | {loosest} |"
+    yield what, str(extra["severity"]), limit, f"`{key}`" if key else "—", loosest
 
 
 def uncertainties_table() -> str:
     """A row for each shipped uncertainty of a rig."""
     rows = [
-        f"| `{one.quantity}` | ±{one.central:g}{'' if one.unit == '1' else f' {one.unit}'} | {one.source} |"
+        (f"`{one.quantity}`", f"±{one.central:g}{'' if one.unit == '1' else f' {one.unit}'}", one.source)
         for one in uncertainty_table()
     ]
-    return "\n".join(["| `[uncertainty]` | shipped | source |", "|---|---|---|", *rows])
+    return markdown(("`[uncertainty]`", "shipped", "source"), rows)
 
 
 DATA_TABLES = {"errors": errors, "limits": limits_table, "uncertainties": uncertainties_table}

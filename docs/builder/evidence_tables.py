@@ -5,7 +5,9 @@ Every number comes from the shipped data files, so that a page cannot say anythi
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 from table_text import UNITS, markdown, number, signed, span
 
@@ -13,7 +15,6 @@ from thermicon.circuit.records import Record
 from thermicon.perception.evidence.results import (
     UNMOVED_SD,
     AblatedRow,
-    Constant,
     judging_predictions,
     load_ablation,
     load_constants,
@@ -35,33 +36,25 @@ GROUPS = {
 
 def experiments_table() -> str:
     """What was conditioned on: one row an experiment."""
-    counts: dict[str, int] = {}
-    for row in load_rows():
-        counts[row.experiment] = counts.get(row.experiment, 0) + 1
-    known = load_evidence().experiments
+    counts, known = Counter(row.experiment for row in load_rows()), load_evidence().experiments
     lines = [
-        (key, each.title, each.citation, each.licence, each.method, counts[key])
-        for key, each in ((key, known[key]) for key in counts)
+        (key, known[key].title, known[key].citation, known[key].licence, known[key].method, count)
+        for key, count in counts.items()
     ]
     return markdown(("key", "experiment", "citation", "licence of code and data", "what was asked", "rows"), lines)
 
 
-def constants_table(mechanisms: Sequence[str] = (), *, sources: bool = True) -> str:
+def constants_table(mechanisms: Sequence[str] = ()) -> str:
     """Constants of the default observer by mechanism; all but offsets of laboratories unless mechanisms are named."""
     rows = [each for each in load_constants() if each.unit != "SD" and (not mechanisms or each.mechanism in mechanisms)]
-    head = ("mechanism", "constant", "value", "95 %", "prior 95 %", "SD left", *(("prior from",) if sources else ()))
-    lines, last = [], ""
-    for each in sorted(rows, key=lambda each: _order(each, rows)):
+    head = ("mechanism", "constant", "value", "95 %", "prior 95 %", "SD left", "prior from")
+    lines, last, order = [], "", [row.mechanism for row in rows]
+    for each in sorted(rows, key=lambda each: order.index(each.mechanism)):
         mechanism, last = ("" if each.mechanism == last else f"**{each.mechanism}**"), each.mechanism
         unit = UNITS.get(each.unit, each.unit)
         cells = (mechanism, each.name, f"{number(each.value)} {unit}".strip(), span(each.low, each.high))
-        source = (each.source,) if sources else ()
-        lines.append((*cells, span(each.prior_low, each.prior_high), f"{each.narrowed:.2f}", *source))
+        lines.append((*cells, span(each.prior_low, each.prior_high), f"{each.narrowed:.2f}", each.source))
     return markdown(head, lines)
-
-
-def _order(each: Constant, rows: Sequence[Constant]) -> int:
-    return [row.mechanism for row in rows].index(each.mechanism)
 
 
 def offsets_table() -> str:
@@ -82,16 +75,10 @@ def unmoved_sentence() -> str:
 def ablation_table() -> str:
     """Every run of the ablation, most lost first."""
     rows = sorted(load_ablation(), key=lambda row: row.difference)
-    lines = [
-        (
-            _ran(row),
-            row.replaced_by,
-            signed(row.difference, 1),
-            f"{row.squares:.1f}",
-            f"{row.worst} ({signed(row.worst_sd, 1)})",
-        )
-        for row in rows
-    ]
+    lines = []
+    for row in rows:
+        worst = f"{row.worst} ({signed(row.worst_sd, 1)})"
+        lines.append((_ran(row), row.replaced_by, signed(row.difference, 1), f"{row.squares:.1f}", worst))
     return markdown(("observer", "what stands in its place", "log evidence", "Σ(miss/SD)²", "worst row (SD)"), lines)
 
 
@@ -135,20 +122,17 @@ def mechanisms_table() -> str:
 
 def predicted_table() -> str:
     """Published results that are never conditioned on: what `validate` compares with predictions."""
-    records: dict[tuple[str, str], int] = {}
-    for record in load_thresholds():
-        if record.use == "predict":
-            key = (record.quantity, record.source)
-            records[key] = records.get(key, 0) + 1
+    records = Counter((each.quantity, each.source) for each in load_thresholds() if each.use == "predict")
     return markdown(("quantity", "source", "records"), [(*key, count) for key, count in sorted(records.items())])
 
 
 def people_table() -> str:
     """How virtual people differ: one row a column of `People`."""
-    return markdown(
-        ("column", "spread", "basis"),
-        [(f"`{name}`", _spread(record), _basis(record)) for name, record in people_records().items()],
-    )
+    rows = []
+    for name, record in people_records().items():
+        basis = f"assumed: {record.source}" if record.use == "assumed" else record.source
+        rows.append((f"`{name}`", _spread(record), basis))
+    return markdown(("column", "spread", "basis"), rows)
 
 
 def _spread(record: Record) -> str:
@@ -162,10 +146,6 @@ def _spread(record: Record) -> str:
     return f"{middle}{span(low, high)} {unit}".strip()
 
 
-def _basis(record: Record) -> str:
-    return f"assumed: {record.source}" if record.use == "assumed" else record.source
-
-
 TABLES: Mapping[str, Callable[[], str]] = {
     "experiments": experiments_table,
     "constants": constants_table,
@@ -177,9 +157,6 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "predicted": predicted_table,
     "people": people_table,
     "mechanisms": mechanisms_table,
-    "constants of receptors": lambda: constants_table(GROUPS["receptors"]),
-    "constants of sensation": lambda: constants_table(GROUPS["sensation"]),
-    "constants of detection": lambda: constants_table(GROUPS["detection"]),
-    "constants of people": lambda: constants_table(GROUPS["people"]),
+    **{f"constants of {section}": partial(constants_table, own) for section, own in GROUPS.items()},
 }
 """Every table by the name that a page's mark gives."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Callable, Iterator
+from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -36,12 +37,13 @@ class Gallery:
 
     def _set(self, entry: Any, icons: IconSet) -> Iterator[str]:
         yield f"## {entry.name}\n\n{icons.title}. {entry.icons} icon{'s' * (entry.icons != 1)}; {entry.source}.\n"
-        self.write(f"gallery/{entry.name}.png", _png(icons.plot().figure))
+        self.write(f"gallery/{entry.name}.png", png(icons.plot().figure))
         yield f"![Courses of the icons of {entry.name}](gallery/{entry.name}.png)\n"
         if self.kept is not None and entry.icons > 1:
             yield from self._predicted(entry.name, icons, self.kept / entry.name)
         yield f":::{{dropdown}} Cue text of {entry.name}\n:icon: code\n:open:\n"
-        yield f"```cue\n{_text_of(entry.name)}```\n:::\n"
+        text = (files("thermicon.icons") / "library" / f"{entry.name}.cue").read_text(encoding="utf-8")
+        yield f"```cue\n{text}```\n:::\n"
 
     def _predicted(self, name: str, icons: IconSet, kept: Path) -> Iterator[str]:
         if not (kept / "confusions.png").is_file():
@@ -75,7 +77,7 @@ def _predict(icons: IconSet, kept: Path) -> None:
     said = {"which": which, "correct": result["proportion_correct"], "bits": result["information_bits"]}
     said["rows"] = list(_rows(ranking, icons))
     (kept / "said.json").write_text(json.dumps(said), encoding="utf-8")
-    (kept / "confusions.png").write_bytes(_png(set_figure(ranking)))
+    (kept / "confusions.png").write_bytes(png(set_figure(ranking)))
 
 
 def _rows(ranking: Ranking, icons: IconSet) -> Iterator[str]:
@@ -87,13 +89,8 @@ def _rows(ranking: Ranking, icons: IconSet) -> Iterator[str]:
         yield f"| `{name}` | {meaning} | {row[labels.index(name)] * 100:.0f} % | `{other}` {share * 100:.0f} % |"
 
 
-def _text_of(name: str) -> str:
-    from importlib.resources import files
-
-    return (files("thermicon.icons") / "library" / f"{name}.cue").read_text(encoding="utf-8")
-
-
-def _png(figure: Figure | Any) -> bytes:
+def png(figure: Figure | Any) -> bytes:
+    """A picture for a page, without the name of the program that drew it."""
     file = io.BytesIO()
     figure.savefig(file, dpi=DPI, metadata={"Software": None})
     return file.getvalue()

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
+from table_text import markdown
 
 from thermicon.circuit.delivery.devicefile import DeviceTable, quantities, units_of
 from thermicon.circuit.rig.modules import build_of, module_table
@@ -32,9 +33,9 @@ def modules_table() -> str:
         size = str(printed["footprint_mm"]).replace("x", "×") + " mm" if printed.get("footprint_mm") else "–"
         plate = build_of(name).plate_J_per_K
         figures = [f"{float(record.get(key)):g}" for key in ("t_hot_C", "i_max_A", "v_max_V", "q_max_W", "dt_max_K")]
-        rows.append(f"| {' | '.join((f'`{name}`', size, '–' if plate is None else f'{plate:g}', *figures))} |")
-    head = "| name | face | plates, J/K each | hot side °C | Imax A | Vmax V | Qmax W | ΔTmax K |"
-    return "\n".join([head, "|---|---|---|---|---|---|---|---|", *rows])
+        rows.append((f"`{name}`", size, "–" if plate is None else f"{plate:g}", *figures))
+    head = ("name", "face", "plates, J/K each", "hot side °C", "Imax A", "Vmax V", "Qmax W", "ΔTmax K")
+    return markdown(head, rows)
 
 
 def device_keys_table() -> str:
@@ -47,8 +48,8 @@ def device_quantities_table() -> str:
     rows = []
     for quantity, about in quantities()[0].items():
         units, (low, high) = sorted(set(units_of(quantity).values())), about["limits"]
-        rows.append(f"| `{quantity}` | {' or '.join(units)} | {low:g} to {high:g} |")
-    return "\n".join(["| quantity | unit | from, to |", "|---|---|---|", *rows])
+        rows.append((f"`{quantity}`", " or ".join(units), f"{low:g} to {high:g}"))
+    return markdown(("quantity", "unit", "from, to"), rows)
 
 
 def study_keys_table() -> str:
@@ -61,14 +62,13 @@ def study_keys_table() -> str:
         for name in names:
             field, meaning = table.model_fields[name], (meanings[prefix[:-1]] if prefix else meanings)[name]
             default = "needed" if field.is_required() else default_of(field.default)
-            rows.append(f"| `{prefix}{name}` | {values_of(properties[name])} | {default} | {meaning} |")
-    return "\n".join(["| key | values | default | meaning |", "|---|---|---|---|", *rows])
+            rows.append((f"`{prefix}{name}`", values_of(properties[name]), default, meaning))
+    return markdown(("key", "values", "default", "meaning"), rows)
 
 
 def _table(model: type[BaseModel]) -> str:
     schema = model.model_json_schema()
-    rows = [f"| `{key}` | {values} | {default} |" for key, values, default in _rows(schema, schema, "")]
-    return "\n".join(["| key | values | default |", "|---|---|---|", *rows])
+    return markdown(("key", "values", "default"), _rows(schema, schema, ""))
 
 
 def _rows(table: dict[str, Any], schema: dict[str, Any], prefix: str) -> Iterator[tuple[str, str, str]]:
@@ -81,7 +81,7 @@ def _rows(table: dict[str, Any], schema: dict[str, Any], prefix: str) -> Iterato
             yield from _rows(schema["$defs"][inner["$ref"].rpartition("/")[2]], schema, place)
         else:
             default = "needed" if name in table.get("required", ()) else default_of(about.get("default"))
-            yield prefix + name, values_of(about), default
+            yield f"`{prefix}{name}`", values_of(about), default
 
 
 def known_of(about: dict[str, Any]) -> dict[str, Any]:

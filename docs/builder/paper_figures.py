@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import io
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from gallery import png
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "explain"))  # the studies are not installed
 
@@ -22,19 +19,20 @@ CAPTIONS = {
 
 def paper_figures(write: Callable[[str, bytes], None]) -> str:
     """Write the pictures, and return the Markdown that shows them."""
-    from source_paper import dermis_course, paper
-    from source_paper.studydraw import stacked_figure
+    from source_paper import paper, studydraw
+    from source_paper.dermis_course import dermis_course
     from thermicon.circuit.solver.draw import plot_current
 
     cue = paper.controlled_cue()
+    dermis = (studydraw.plot_thermistors, paper.thermistors()), (studydraw.plot_dermis_course, dermis_course())
     drawn = {
-        "figure-3": stacked_figure(lambda ax: plot_current(cue.skin, ax), cue.plot),
-        "figure-4": stacked_figure(lambda ax: cue.plot(ax, "display")),
-        "figure-6": stacked_figure(paper.thermistors().plot, dermis_course.dermis_course().plot),
+        "figure-3": studydraw.stacked_figure((plot_current, cue.skin), (studydraw.plot_controlled, cue.skin)),
+        "figure-4": studydraw.stacked_figure((studydraw.plot_controlled, cue.display)),
+        "figure-6": studydraw.stacked_figure(*dermis),
     }
     lines = []
     for name, figure in drawn.items():
-        write(f"explain/paper/{name}.png", _png(figure))
+        write(f"explain/paper/{name}.png", png(figure))
         lines += [f"![{CAPTIONS[name]}](paper/{name}.png)", "", f"*{CAPTIONS[name]}*", ""]
     return "\n".join(lines)
 
@@ -72,9 +70,3 @@ def circuit_diagram(write: Callable[[str, bytes], None]) -> str:
         "temperature of the node, out of the display and gives it to the hot plate; half of its Joule heat I²R goes\n"
         "to either.*"
     )
-
-
-def _png(figure: Figure) -> bytes:
-    file = io.BytesIO()
-    figure.savefig(file, dpi=110, metadata={"Software": None})
-    return file.getvalue()

@@ -1,7 +1,6 @@
 """Tables of the sampled posterior as Markdown: what it says of each constant, left-out predictions, variants.
 
-Left-out predictions by draws, log scores of the variants and of forms of memory are finished comparisons: tables whose
-first line says by which version and from what they were made.
+The last two, and scores of forms of memory, are finished comparisons: tables that say by which version they were made.
 """
 
 from __future__ import annotations
@@ -18,19 +17,16 @@ from table_text import UNITS, markdown, number, signed, span
 
 from thermicon.perception.arrays import Array
 from thermicon.perception.evidence.posterior import Posterior
-from thermicon.perception.evidence.results import UNMOVED_SD, load_constants, read_rows
-from thermicon.perception.evidence.rows import Row, load_rows
+from thermicon.perception.evidence.results import UNMOVED_SD, OfRow, load_constants, read_rows
+from thermicon.perception.evidence.rows import load_rows
 from thermicon.perception.observer.channels import VARIABLES, Variable
 from thermicon.perception.observer.draws import PosteriorDraws
 
 
 @dataclass(frozen=True, slots=True)
-class VariantScores:
+class VariantScores(OfRow):
     """Log scores of one left-out row by each variant: log densities of the published number on the row's scale."""
 
-    experiment: str
-    statistic: str
-    channel: str
     temperature: float
     heat_flow: float
 
@@ -49,17 +45,13 @@ class FormScore:
 
 
 @dataclass(frozen=True, slots=True)
-class LeftOutRow:
+class LeftOutRow(OfRow):
     """One row predicted by draws of a posterior that never saw its experiment; numbers in the row's own unit.
 
     `low` to `high` is the 95 % interval, `lower` to `upper` that of 50 %. `probability` is that of a smaller number
-    than the published one; `naive` is the log score of the naive baseline, NaN where there is none; `k_hat` the shape
-    of the weights' tail, good below 0.7.
+    than the published one; `naive` is the log score of the naive baseline, NaN where there is none.
     """
 
-    experiment: str
-    statistic: str
-    channel: str
     label: str
     unit: str
     published: float
@@ -73,11 +65,6 @@ class LeftOutRow:
     naive: float
     k_hat: float
     method: str
-
-    @property
-    def row(self) -> Row:
-        """The row of the likelihood."""
-        return next(row for row in load_rows() if row.key == (self.experiment, self.statistic, self.channel))
 
     def covered(self, share: float) -> bool:
         """Whether the central interval of a share contains the published number."""
@@ -94,29 +81,14 @@ def load_left_out() -> tuple[LeftOutRow, ...]:
     return tuple(read_rows(LEFT_OUT, LeftOutRow))
 
 
-@lru_cache(maxsize=1)
-def load_forms() -> tuple[FormScore, ...]:
-    """Scores of forms of memory, form by form."""
-    return tuple(read_rows(FORMS, FormScore))
-
-
-@lru_cache(maxsize=1)
 def variant_log_scores() -> Array:
-    """Log scores (variants, rows) in the order of VARIABLES and of the likelihood.
-
-    >>> variant_log_scores().shape
-    (2, 61)
-    """
+    """Log scores (variants, rows) in the order of VARIABLES and of the likelihood."""
     rows = list(read_rows(SCORES, VariantScores))
     return np.array([[row.temperature for row in rows], [row.heat_flow for row in rows]])
 
 
 def variant_weights() -> dict[Variable, float]:
-    """Weights of the variants that predict the left-out rows best as a mixture.
-
-    >>> round(sum(variant_weights().values()), 6)
-    1.0
-    """
+    """Weights of the variants that predict the left-out rows best as a mixture."""
     return dict(zip(VARIABLES, stacking_weights(variant_log_scores()).tolist(), strict=True))
 
 
@@ -124,9 +96,6 @@ def stacking_weights(log_scores: Array, rounds: int = 2000) -> Array:
     """Weights (variants,) that sum to 1 and maximise the log score of the mixture, from log scores (variants, rows).
 
     Expectation–maximisation, which rises with every round (Yao, Vehtari, Simpson & Gelman 2018).
-
-    >>> stacking_weights(np.array([[0.0, 0.0], [-9.0, -9.0]])).round(2)
-    array([1., 0.])
     """
     densities = np.exp(log_scores - log_scores.max(axis=0))
     weights = np.full(len(densities), 1.0 / len(densities))
@@ -218,27 +187,17 @@ def sampled_left_out_table(*, spreads: bool) -> str:
         mark = "" if each.covered(0.95) else "**"
         unit = {"1": "", "0-100": "of 100"}.get(each.unit, each.unit)
         naive = "" if math.isnan(each.naive) else signed(each.log_score - each.naive, 2)
-        rows.append(
-            (
-                each.experiment,
-                f"{mark}{each.label}{mark}",
-                unit,
-                number(each.published),
-                number(each.median),
-                span(each.lower, each.upper),
-                span(each.low, each.high),
-                signed(each.log_score, 2),
-                naive,
-            )
-        )
+        numbers = number(each.published), number(each.median), span(each.lower, each.upper), span(each.low, each.high)
+        rows.append((each.experiment, f"{mark}{each.label}{mark}", unit, *numbers, signed(each.log_score, 2), naive))
     return markdown(
         ("key", "row", "unit", "published", "predicted", "50 %", "95 %", "log score", "over the naive baseline"), rows
     )
 
 
-def scores_sentence(rows: Sequence[LeftOutRow]) -> str:
+def scores_sentence() -> str:
     """Coverage, widths and log scores of left-out predictions of the rows by which they are judged."""
-    every, rows = rows, [each for each in rows if each.row.judges]
+    every = load_left_out()
+    rows = [each for each in every if each.row.judges]
     spread = [each for each in every if each.row.kind == "spread"]
     inside, wide = ([sum(each.covered(share) for each in some) for share in (0.5, 0.95)] for some in (rows, spread))
     ratios = sorted(each.high / each.low for each in rows if each.row.log)
@@ -258,10 +217,7 @@ def scores_sentence(rows: Sequence[LeftOutRow]) -> str:
 
 
 def variants_sentence() -> str:
-    """Mean left-out log score of each variant, their best mixture, and how sure temperature is better than heat flow.
-
-    The standard error is that of a sum over experiments, whose rows share laboratory and people.
-    """
+    """Mean left-out log score of each variant, their best mixture, and how sure temperature beats heat flow."""
     logs = variant_log_scores()
     parts = [
         f"{name} {signed(mean, 2)} (weight {weight:.2f})"
@@ -282,9 +238,8 @@ def variants_sentence() -> str:
 
 def forms_table() -> str:
     """Scores of forms of memory, with the sum of each form."""
-    rows, forms = load_forms(), dict.fromkeys(one.norm for one in load_forms())
-    lines = []
-    for norm in forms:
+    rows, lines = list(read_rows(FORMS, FormScore)), []
+    for norm in dict.fromkeys(one.norm for one in rows):
         own = [one for one in rows if one.norm == norm]
         for one in own:
             ends = span(one.low, one.high)
@@ -301,7 +256,7 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "moved": moved_sentence,
     "left out by draws": lambda: sampled_left_out_table(spreads=False),
     "left out spreads": lambda: sampled_left_out_table(spreads=True),
-    "scores": lambda: scores_sentence(load_left_out()),
+    "scores": scores_sentence,
     "variants": variants_sentence,
     "forms of memory": forms_table,
 }

@@ -44,7 +44,9 @@ def _page(package: str) -> Iterator[str]:
         for name in names:
             slug = name.lower() + (f"-{seen[name.lower()]}" if seen[name.lower()] else "")
             seen[name.lower()] += 1
-            yield f"| [`{name}`](#{slug}) | {plain(_summary(getattr(module, name)))} |"
+            value = getattr(module, name)
+            summary = (inspect.getdoc(value) or "").partition("\n")[0] if callable(value) else ""
+            yield f"| [`{name}`](#{slug}) | {plain(summary)} |"
         yield ""
     for name in (name for names in rooms.values() for name in names):
         value = getattr(module, name)
@@ -62,7 +64,3 @@ def listed(module: ModuleType) -> dict[str, list[str]]:
         if isinstance(node, ast.ImportFrom) and node.module:
             rooms.setdefault(node.module.partition(".")[0], []).extend(alias.name for alias in node.names)
     return rooms
-
-
-def _summary(value: object) -> str:
-    return (inspect.getdoc(value) or "").partition("\n")[0] if callable(value) else ""

@@ -24,8 +24,8 @@ MOVED = {
 
 LINK = re.compile(r"(?P<before>\]\()(?P<target>(?!\w+:)[^)\s#]+)(?P<anchor>#[^)\s]*)?(?=\))")
 FENCE = re.compile(r"^(?P<indent> *)```(?P<kind>[\w{}-]*)\n.*?^ *```", re.MULTILINE | re.DOTALL)
-NO_LEXER = ("csv", "cue")
-"""Languages of blocks that a code host colours and Pygments does not know."""
+NO_LEXER = ("", "csv", "cue")
+"""Languages of blocks that a code host colours and Pygments does not know, or none."""
 SLOT = re.compile(r"<!-- site: (?P<name>[\w ]+) -->\n(?P<meanwhile>.*?)<!-- end of site -->\n?", re.DOTALL)
 """What only the site has, made from the program; a code host shows the sentences between the marks instead."""
 
@@ -86,7 +86,7 @@ class Staging:
         """Return a page of the repository with links as they are on the site, and with blocks in colour."""
         parts, end = [], 0
         for fence in FENCE.finditer(text):
-            parts += [self._links(text[end : fence.start()], where, here), _coloured(fence[0])]
+            parts += [self._links(text[end : fence.start()], where, here), _coloured(fence)]
             end = fence.end()
         return "".join([*parts, self._links(text[end:], where, here)])
 
@@ -110,17 +110,13 @@ def _notebook(path: Path) -> str:
     return text.replace('"language_info": {', '"language_info": {"pygments_lexer": "ipython3",', 1)
 
 
-def _coloured(fence: str) -> str:
+def _coloured(fence: re.Match[str]) -> str:
     """A block of code with its language: cue text and a block without a language are plain text."""
-    kind = re.match(r" *```(\S*)", fence)
-    language = kind[1] if kind else ""
-    if not language:
-        language = "text"
-    elif language in NO_LEXER:
-        return fence.replace(f"```{language}", "```text", 1)
-    elif not language.startswith("{") and language != "math":
-        get_lexer_by_name(language)
-    return fence.replace("```", f"```{language}", 1) if kind and not kind[1] else fence
+    if (kind := fence["kind"]) in NO_LEXER:
+        return fence[0].replace(f"```{kind}", "```text", 1)
+    if not kind.startswith("{") and kind != "math":
+        get_lexer_by_name(kind)
+    return fence[0]
 
 
 def pages() -> list[Path]:

@@ -10,6 +10,7 @@ import typer
 
 from thermicon.icons.files.table_text import TABLES
 from thermicon.icons.number_text import number
+from thermicon.perception.criteria import MOST_ICONS
 
 from ..files.outputs import check_separate
 from ..files.trace_files import Curves, LogError, align, curves_of, quantity, read_curves
@@ -17,7 +18,7 @@ from ..messages import load_rig, note, progress_bar, usage
 from ..report.run_report import Comparison, compare_report, outcome_text
 from ..report.sets_report import sets_report
 from ..report.terminal import show
-from .options import MOST_ICONS, FigureOptions, IconName, RigOptions, Theirs, flag, opt, pick, read_set, theirs_of
+from .options import FigureOptions, IconName, RigOptions, Theirs, flag, opt, pick, read_set, theirs_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace

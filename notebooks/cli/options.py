@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
 import typer
 
 from thermicon.icons.atomic import complete_or_absent
+from thermicon.perception.criteria import MOST_ICONS
 
 from ..figures.style import SCREEN, Look, read_width_mm
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output
@@ -30,8 +31,6 @@ if TYPE_CHECKING:
     from thermicon.perception.observer.observer_model import ObserverModel
 
 MOST_PEOPLE, MOST_DRAWS, LARGEST_SEED = 100_000, 10_000, 2**32 - 1
-MOST_ICONS = 2000
-"""More icons at once than anyone reads about; families may have 100,000."""
 LONGEST_TAIL_S = 86_400.0
 
 

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from thermicon.perception.criteria import MOST_ICONS
+
 from ..files.outputs import STDOUT, check_output, check_separate
 from ..messages import check_draws, fail, note, progress_bar, usage
 from ..report.following import after_ranking
 from ..report.rank_report import doubt_report, rank_report, rules_report
 from ..report.terminal import show
 from .options import (
-    MOST_ICONS,
     CrowdOptions,
     FigureOptions,
     FileNames,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING
@@ -19,10 +19,7 @@ KEPT = 16
 
 @dataclass(frozen=True, slots=True)
 class Trouble:
-    """One error of a text: lines and columns from 1, ``end_column`` behind the last character that is marked.
-
-    ``headline`` says what is wrong, ``hint`` what would fit, ``suggestion`` is one line that was tried out, or None.
-    """
+    """One error of a text: lines and columns from 1, what is wrong, what would fit, and one line that was tried out."""
 
     line: int
     column: int
@@ -40,7 +37,7 @@ class Reading:
     text: str
     icons: IconSet | None
     troubles: tuple[Trouble, ...] = ()
-    more: int = field(default=0)
+    more: int = 0
 
     @property
     def names(self) -> tuple[str, ...]:

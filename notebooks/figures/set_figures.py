@@ -53,6 +53,7 @@ def observed_figure(found: Observed[Any, Any], stacked: bool = False) -> Any:
     maps = {"Observed": observed, "Predicted": found.conditioned.simulated.pooled.mean(axis=0)}
     side = max(4.2, 1.2 + 0.07 * max(map(len, names)) + 0.45 * len(names))
     low = 1.4 + 0.6 * len(found.predictions)
+    rows: list[Any]
     rows, heights = [["Observed", "Predicted"], ["after"] * 2], [side, low]
     if stacked:
         rows, heights = [[name] for name in (*maps, "after")], [FLAT * (side - 0.6), FLAT * side, low]

@@ -21,14 +21,14 @@ OF_ICONS = ("detected", "onset")
 
 def after_ranking(found: SetReport, command: Command) -> str:
     """The command for what is in the way of a set: its play, its detection, its confusions; otherwise the export."""
-    from thermicon.perception.selection.pool import AN_ALERT
+    from thermicon.perception.criteria import FELT_FROM
 
     missed = [] if found.goal is None else [each.part.quantity for each in found.goal.parts if not each.met]
     icons, wanted = found.ranking.icons, _goal(None if found.goal is None else found.goal.goal)
     lost = next((icon.name for icon in icons if not (icon.safe and icon.reachable)), None)
     if lost is not None:
         return command("simulate", "--icon", lost)
-    if any(each in OF_ICONS for each in missed) or (not missed and min(found.ranking.felt.detected) < AN_ALERT):
+    if any(each in OF_ICONS for each in missed) or (not missed and min(found.ranking.felt.detected) < FELT_FROM):
         return _wider(found, command)
     if missed and len(icons) > 2:
         return command("improve", "--up-to", str(len(icons)), *wanted)

@@ -13,14 +13,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 from .build import FELT, UNFELT, Plan, levels_K, plays_of
-from .schedule import (
-    Pace,
-    events_description,
-    json_bytes,
-    planned_events,
-    planned_plays,
-    table,
-)
+from .schedule import Pace, events_description, json_bytes, planned_events, planned_plays, table
 from .study_file import labels_of
 
 if TYPE_CHECKING:
@@ -39,10 +32,7 @@ CATCH, MANIFEST = "nothing", "study.json"
 
 
 def files_of(plan: Plan) -> dict[str, bytes]:
-    """Return the bytes of every file of a study, by name; equal studies give equal bytes.
-
-    Raises FormatError where a drive cannot be packed.
-    """
+    """Return the bytes of every file of a study, by name; equal studies give equal bytes."""
     from thermicon.circuit.rig.settings import toml_text
 
     materials, ready = plan.materials, plan.judged.ready

@@ -42,8 +42,7 @@ class Refused(Exception):
 class Judged:
     """Drives that may be written, the gap between them, and the sessions judged in the worst case, by participant.
 
-    `drift_K` has the largest baseline drift of every participant on the rig as given; empty without a module.
-    `after_breaks` are the blocks of the same participants, each from rest; empty without breaks.
+    `drift_K` is the largest of the baseline; `after_breaks` the blocks, each from rest; both may be empty.
     """
 
     ready: Export
@@ -73,10 +72,7 @@ class Judged:
 def judge_drives(
     icons: Sequence[Icon], rig: Rig, study: Study, gap: Gap, device: Device, step: Progress | None = None
 ) -> tuple[Export, Gap]:
-    """Deliver and judge every drive, repeated in any order with the gap; a derived gap grows until that is safe.
-
-    Raises Refused with every reason against the drives, InputError where the device cannot play them.
-    """
+    """Deliver and judge every drive, repeated in any order with the gap; a derived gap grows until that is safe."""
     from thermicon.circuit import export
 
     stimuli, timing = study.stimuli, study.timing
@@ -116,10 +112,8 @@ def judge_sessions(
 ) -> tuple[dict[str, Session], dict[str, float], dict[str, WorstCase]]:
     """Judge whole sessions in the worst case; return them, every participant's drift of the baseline, and the blocks.
 
-    Every order is run on the rig as given. In all corners run those of up to four participants, or the orders with the
-    coldest and the warmest skin, the most dose and the most drift. `held`: the device corrects its display. Practice
-    is part of a session. Where there are breaks, each order is run twice: without them, and with every block from rest,
-    which a break brings skin and module back to. Raises Refused where one is red. Empty for a rig without a module.
+    Every order is run on the rig as given; in all corners those of up to four participants, or the most extreme ones.
+    Where there are breaks, each is run without them, and with every block from rest. Raises Refused where one is red.
     """
     from thermicon.circuit import SessionPlan, play_session
     from thermicon.circuit.safety.sessionplay import drive_of, worst_case_of

@@ -40,10 +40,7 @@ def williams_rows(count: int) -> tuple[Block, ...]:
 def orders_of(
     rule: str, icons: int, repetitions: int, blocks: int, participants: int, seed: int
 ) -> tuple[tuple[Block, ...], ...]:
-    """Return the blocks of every participant, each of two icons or more `repetitions` times in a block.
-
-    No icon follows itself, across blocks neither. Equal seeds give equal orders.
-    """
+    """Return the blocks of every participant, each of two icons or more `repetitions` times, none after itself."""
     rng = Random(seed)
     if rule == "williams":
         return _williams(rng, icons, repetitions, blocks, participants)

@@ -27,10 +27,6 @@ class Trial:
     trial: int
     icon: str
 
-    def __post_init__(self) -> None:
-        if (self.block == 0) != (self.trial == 0):
-            raise ValueError(f"trial {self.trial} in block {self.block}: practice alone has neither number")
-
 
 @dataclass(frozen=True, slots=True)
 class Course:
@@ -45,14 +41,9 @@ class Course:
         return tuple(trial.icon for trial in self.trials)
 
     @property
-    def blocks(self) -> tuple[int, ...]:
-        """Numbers of the blocks in order, 0 for practice."""
-        return tuple(dict.fromkeys(trial.block for trial in self.trials))
-
-    @property
     def breaks(self) -> int:
         """Number of breaks: one before every block but the first."""
-        return len(set(self.blocks) - {0, 1})
+        return len({trial.block for trial in self.trials} - {0, 1})
 
     @property
     def sittings(self) -> tuple[tuple[str, ...], ...]:
@@ -131,10 +122,7 @@ class PlannedPlay:
 
 
 def planned_plays(course: Course, durations_s: Mapping[str, float], pace: Pace) -> tuple[PlannedPlay, ...]:
-    """Return the planned times of a participant's plays; a block begins with the landing of the hand.
-
-    Practice goes over into the first block, the hand on the display.
-    """
+    """Return the planned times of a participant's plays; practice goes over into the first block without a break."""
     now, last, plays = 0.0, None, []
     for trial in course.trials:
         if last is None:

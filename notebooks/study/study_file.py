@@ -132,10 +132,7 @@ class StudyError(InputError):
 
 
 def study_text(source: str | Path) -> str:
-    """Return the text of a study file, or of the shipped example, which answers to `example`.
-
-    Raises StudyError for a file that is missing or is not UTF-8 text.
-    """
+    """Return the text of a study file, or of the shipped example, which answers to `example`."""
     path = Path(source)
     if not path.exists() and str(source) in SHIPPED_NAMES:
         return resources.files("thermicon.notebooks").joinpath("data", SHIPPED).read_text(encoding="utf-8")

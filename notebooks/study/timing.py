@@ -28,10 +28,9 @@ LONGEST_LANDING_S = 1800.0
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """The least time between icons in s, why it is that long, and what the icon before still changes after it.
+    """The least time between icons in s, why it is that long, and the largest d′ carried over, from which to which.
 
-    `carry_over_d_prime` is the largest difference from the icon by itself, after any other icon, in d′ from memory;
-    `tried` has it beside every gap that was looked at.
+    `tried` has the d′ beside every gap that was looked at.
     """
 
     gap_s: float
@@ -43,10 +42,9 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class Landing:
-    """How long the hand rests on the display before a block, and what is left of its own temperature by then.
+    """How long the hand rests on the display before a block, and what is then left of its own temperature.
 
-    `left_K` is the largest deviation of skin and receptors at the end, `left_at_10_s_K` after 10 s, for skin that
-    arrives `from_K` warmer or colder than it rests.
+    `left_K` is of skin and receptors at the end, `left_at_10_s_K` after 10 s, for skin that arrives `from_K` off.
     """
 
     landing_s: float
@@ -122,10 +120,7 @@ def shortest_gap_s(passes: Callable[[float], bool]) -> float | None:
 
 
 def find_landing(icon: Icon, rig: Rig, timing: Timing, held: bool) -> Landing:
-    """Return the given landing, or the time until a hand that arrives too warm or too cold has settled.
-
-    Raises StudyError where that takes longer than half an hour.
-    """
+    """Return the given landing, or the time until a hand that arrives too warm or too cold has settled."""
     times, away = settling(icon, rig, timing.landing_from_K, held)
     if timing.landing_s is not None:
         seconds = timing.landing_s
@@ -144,8 +139,7 @@ def find_landing(icon: Icon, rig: Rig, timing: Timing, held: bool) -> Landing:
 def settling(icon: Icon, rig: Rig, from_K: float, held: bool) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Seconds after contact, and the largest deviation of skin and receptors in K from where they settle.
 
-    Skin arrives in the steady state of a surface `from_K` warmer or colder than it rests. The display waits at the
-    baseline of the icon; `held`: it stays there, otherwise the resting current flows and the hand warms the module.
+    Skin arrives `from_K` warmer or colder than it rests; the display stays at baseline (`held`), or the current does.
     """
     from thermicon.circuit import Drive, design, simulate_current
     from thermicon.circuit.solver.inverse import baseline_C

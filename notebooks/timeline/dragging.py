@@ -117,19 +117,13 @@ class _Move:
         return self.amount(field).step(getattr(leaf, field), kind_of(leaf, field, self.icon.context.control))
 
     def solve(self, to_level: float, to_time: float) -> tuple[float, float]:
-        """Return the size and the duration of the change that bring the corner to a level and time.
-
-        In a repeat a number changes every round, so the corner depends on all rounds before it.
-        """
+        """Return the size and the duration of the change that bring the corner to a level and time, over all rounds."""
         now, grip = self.corner, self.grip
         size, took = float(now.level - now.begin), float(now.time_s - now.begin_s)
         place = float(now.level), float(now.time_s)
         slope = [1.0, 1.0]
         for _ in range(ROUNDS):
-            miss = [
-                to_level - place[0] if grip.level else 0.0,
-                to_time - place[1] if grip.time else 0.0,
-            ]
+            miss = [to_level - place[0] if grip.level else 0.0, to_time - place[1] if grip.time else 0.0]
             if max(map(abs, miss)) < NEAR:
                 break
             old, before = (size, took), place

@@ -28,10 +28,9 @@ RATES = ("rate_K_per_s", "rate_A_per_s", "rate_per_s")
 
 @dataclass(frozen=True, slots=True)
 class Corner:
-    """One corner as played, exact: its statement, the part of the statement, where that part begins, and the corner.
+    """One corner as played, exact: its statement, the part of it, where that begins, and the corner; s and °C or A.
 
-    ``path`` leads to the statement through repeats; None in a played icon, which ``played`` then names. Times in s,
-    levels in °C, or A under control current. ``line`` is that of the statement, or of the ``play``.
+    ``path`` leads to the statement through repeats; None in a played icon, which ``played`` then names.
     """
 
     leaf: Leaf
@@ -47,10 +46,7 @@ class Corner:
 
 @dataclass(frozen=True, slots=True)
 class Handle:
-    """A draggable corner: time in s, level in °C (A under control current), and the directions in which it moves.
-
-    ``why`` is the reason why a direction does not move; None if both do. ``line`` counts from 1.
-    """
+    """A draggable corner: s, °C or A, the directions in which it moves, and why not, if it does not move in both."""
 
     time_s: float
     level: float

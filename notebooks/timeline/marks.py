@@ -52,11 +52,7 @@ class Span:
 
 
 def event_times_of(trace: Trace, percept: Percept) -> tuple[EventTime, ...]:
-    """Return onset, felt peaks and skin peaks of the channels that respond, the earliest first.
-
-    A channel whose sensation stays below d′ = 1 has no marks, and of an icon that is not felt only the skin's peaks are
-    marked. A held peak of the skin counts from when the temperature comes within 1 %.
-    """
+    """Return onset, felt peaks and skin peaks (held: within 1 %) of channels that reach d′ = 1, earliest first."""
     found: list[EventTime] = []
     if percept.onset_s is not None and percept.channel is not None:
         found.append(EventTime("onset", percept.onset_s, percept.channel, "response"))
@@ -75,10 +71,7 @@ def event_times_of(trace: Trace, percept: Percept) -> tuple[EventTime, ...]:
 
 
 def missed_spans(icon: Icon, trace: Trace, rig: Rig) -> tuple[Span, ...]:
-    """Return when a run misses its target, or asks for more current than the driver has; nothing where it is reached.
-
-    A step is as fast as the driver can make it, so what it takes to arrive is missed only where it never does.
-    """
+    """Return when a run misses its target or asks for too much current; of a step, only where it never arrives."""
     if trace.reachable:
         return ()
     met = ["driver's limits"] if trace.outcome is None else [name for name, _ in trace.outcome.limits if name in LIMITS]

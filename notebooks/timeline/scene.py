@@ -101,8 +101,8 @@ def scene(
 ) -> Scene:
     """Return the scene of a text on a rig, for the icon of a name, or else for the one that stands in its place.
 
-    ``before`` is the scene that is shown now: its drawing stays, as ``stale``, where there is nothing new to draw.
-    ``notes`` come first among the scene's own. Raises nothing for what a person may type or set.
+    The drawing of the scene ``before`` stays, as ``stale``, where there is nothing new. Raises nothing for what a
+    person may type or set.
     """
     from thermicon.circuit import InputError
     from thermicon.perception import Observer

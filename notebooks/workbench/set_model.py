@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..cli.options import MOST_ICONS
+from thermicon.perception.criteria import MOST_ICONS
+
 from ..editing.cue_check import Reading, read_text
 from ..timeline.frames import MOST_POINTS, CanvasFrame, terms_of
 from ..timeline.scene import draw

@@ -167,8 +167,7 @@ class Workbench:
         Raises CueErrors for a bad text, ValueError for more icons than are compared at once.
         """
         from thermicon.perception import rank
-
-        from ..cli.options import MOST_ICONS
+        from thermicon.perception.criteria import MOST_ICONS
 
         if len(self.icons) > MOST_ICONS:
             many = f"{len(self.icons):,} icons are more than the {MOST_ICONS:,} that are compared at once"

@@ -1,9 +1,7 @@
 """``python -m thermicon.perception.evidence``: make the shipped results of the inference again, step by step.
 
-``fit`` infers the constants of every variant at the maximum of the posterior, and again without each experiment in turn
-to predict it; with ``--shipped`` it keeps the constants and writes their predictions alone. ``sample`` writes 1,000
-draws of the posterior; chains that have not converged are refused. ``observer`` writes the parameter file of the
-observer. On one computer the same seed gives the same draws, however many workers there are.
+``fit`` infers the constants of every variant, and again without each experiment in turn to predict it (``--shipped``:
+predictions at the constants there are); ``sample`` writes draws of the posterior; ``observer`` the parameter file.
 """
 
 import argparse
@@ -68,7 +66,7 @@ def tell(done: int, total: int, words: str = "") -> None:
 def write_fit() -> None:
     """Infer the constants of every variant, in minutes on one core, and write the tables of the package.
 
-    Draws of the variant that is not sampled are those of the normal approximation at its maximum, and marked as such.
+    Draws of the variant that is not sampled are those of the normal approximation, and marked as such.
     """
 
     def fitted(variable: Variable) -> Maximum:

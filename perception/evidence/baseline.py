@@ -7,10 +7,9 @@ from .verdicts import judge_row
 
 
 def nearer_of(row: Row, model: float | None, baseline: float | None, published: Published) -> str:
-    """Which of `model` and `baseline` is nearer to what was published; `both` where they are as near.
+    """Which of `model` and `baseline` is nearer to the published number, or else to the criterion of the row.
 
-    To its number or interval, where there is one of the same quantity, else to the criterion of the row. Nothing where
-    there is neither, or no baseline.
+    `both` where they are as near, nothing where there is no baseline, or nothing to be near to.
     """
     low, high = published.low, published.high
     if published.value is not None:

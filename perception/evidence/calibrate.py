@@ -1,7 +1,6 @@
 """Write the observer's parameter file: inferred constants, records taken over, and the noise of memory.
 
-Constants are those of the maximum of the posterior (`inference`), so that they belong together: with so many constants
-no draw is near the middle of them all. Intervals cover 95 % of the draws. Records marked `predict` are never read.
+Constants are those of the maximum, since no draw is near the middle of them all; intervals cover 95 % of the draws.
 """
 
 import math

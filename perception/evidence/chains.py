@@ -88,10 +88,7 @@ def begin(size: int, seed: int, number: int) -> Chain:
 def extend(
     chain: Chain, residuals: Callable[[Array], Array], reference: Reference, surrogate: Surrogate, steps: int
 ) -> Chain:
-    """The chain with more steps; the same steps whether they are taken at once or in parts.
-
-    Half the squares of the residuals of a vector are its negative log density.
-    """
+    """The chain with more steps, for which half the squares of `residuals` are the negative log density."""
     import emcee
 
     size = reference.middle.size
@@ -205,8 +202,7 @@ def learn(
 ) -> tuple[Surrogate, Reference, Points, tuple[Chain, ...]]:
     """The surrogate of a posterior, its coordinates, the points it was fitted to, and chains that have warmed up.
 
-    `reference` is the normal approximation at the maximum; the posterior is wider, so that each round's walk gives the
-    coordinates of the next. What is learnt depends on the seed alone.
+    The posterior is wider than `reference`, the normal approximation: each walk gives the coordinates of the next.
     """
     random = np.random.RandomState(np.random.MT19937(np.random.SeedSequence([seed, 1 << 20])))
 

@@ -1,7 +1,6 @@
 """Published experiments, run on the observer: thresholds against rate and method, reaction times, peaks and returns.
 
-Each function returns predictions, with the interval that unmeasured parameters leave, for one sensory variable. What is
-not stated where an experiment was found is stated here, as a condition. Constants were inferred from limits and
+What is not stated where an experiment was found is stated here, as a condition. Constants were inferred from limits and
 reaction times on the forearm, and from none of the others.
 """
 
@@ -55,11 +54,7 @@ def _threshold(method: str, channel: Channel, rate_K_per_s: float = 1.0, hold_s:
 
 
 def rate_curve(variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0) -> tuple[Predicted, ...]:
-    """Thresholds on the forearm against the rate of change, as Kenshalo, Holmes & Wood 1968 studied.
-
-    A threshold (K) for each channel and rate; then for each channel the largest change of threshold over
-    0.1 to 0.3 K/s, and the thresholds at the other rates over that at 0.1 K/s.
-    """
+    """Thresholds on the forearm against the rate of change, as Kenshalo, Holmes & Wood 1968 studied."""
     setting = Setting("forearm", AT_THE_SKIN, 9.0)
     said = "forced choice at the skin, forearm, from 32 °C; the end of the ramp is held for 1 s"
 
@@ -97,10 +92,7 @@ def limits(
     draws: int = DRAWS,
     seed: int = 0,
 ) -> tuple[Predicted, ...]:
-    """Limits at 1 °C/s from 32 °C on the back of the hand (9 cm²) or the forearm (10 cm²), cold then warm.
-
-    The value is the median of `people`, of 20 to 30 years unless `age_years` is given.
-    """
+    """Limits at 1 °C/s from 32 °C, cold then warm: the median of `people`, of 20 to 30 years if no age is given."""
     rig, area = LIMITS[site]
     setting, aged = _setting(rig, area), "" if age_years is None else f", {age_years:g} years"
     said = f"display ramp of 1 K/s, {area:g} cm²{aged}"
@@ -118,10 +110,7 @@ def limits(
 
 
 def reaction_times(variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0) -> tuple[Predicted, ...]:
-    """Choice reaction times on the forearm at 5 °C/s from 31 °C: a median for each area, their exponent, their ratio.
-
-    The times of the largest area are those to compare with the published ones (about 10 cm²).
-    """
+    """Choice reaction times on the forearm at 5 °C/s from 31 °C: a median for each area, their exponent and ratio."""
     said = f"display ramp of {RAMP_K_PER_S:g} K/s up to {RAMP_K:g} K from 31 °C, forearm, warm or cold?"
     largest = AREAS_CM2[-1]
 
@@ -153,10 +142,8 @@ def _setting(rig: str, area_cm2: float) -> Setting:
 def peak_lead(variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0) -> tuple[Predicted, ...]:
     """Felt peak minus physical peak (s, negative: felt before), and lag of the felt onset, per channel.
 
-    The stimulus is one smooth pulse, size·(1 − cos 2πt/T)/2 of the display on the thenar. The physical
-    peak is that of the display, then that of the face of the skin; the felt one is on the percept clock.
-    The onset lag, also on the percept clock, of the pulse and of a steep step, is what heat must lead a
-    touch by to seem simultaneous if touch itself took no time.
+    The stimulus is one smooth pulse of the display on the thenar, for the onset also a steep step: its lag is what heat
+    must lead a touch by to seem simultaneous if touch itself took no time.
     """
     said = f"raised-cosine display pulse of {PULSE_K:g} K in {PULSE_S:g} s, thenar, percept clock"
 
@@ -180,9 +167,7 @@ def peak_lead(variable: Variable = "temperature", *, draws: int = DRAWS, seed: i
 def first_and_return(variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0) -> tuple[Predicted, ...]:
     """Probability that the return of a step near threshold is reported, for each direction of the step.
 
-    The step is one that is reported in half of the trials by a yes/no observer who is not cautious, at
-    1 K/s at the skin of the thenar, held, then returned; the report of the return is of the other channel
-    after it began, by the same observer. Published: only the first direction is felt.
+    Half of the steps are reported by an observer who is not cautious. Published: only the first direction is felt.
     """
     alarms = load_thresholds().one("false-alarm rate near threshold").central
     said = f"skin steps at 1 K/s half of which are reported, held for {HOLD_S:g} s, {alarms:g} false alarms, thenar"

@@ -1,11 +1,7 @@
 """Icons named from memory, for every variant of the observer: confusions, and their dependence on parameters.
 
-Six icons, and waves that differ in shape alone: square, sine and triangle, on both sides of baseline and on one, with
-two periods and one size, shipped as `wave-confusions`; sizes and periods of published waves were not available in
-numbers.
-
-The same chain as `rank`, on the same people; beyond it, receptors that go by heat flow, and
-the laboratories of a new one's interval, whose observers stand behind the other experiments too.
+Six icons, and waves that differ in shape alone, shipped as `wave-confusions`, since published ones were not available
+in numbers. The same chain as `rank`, on the same people.
 """
 
 from __future__ import annotations
@@ -46,10 +42,7 @@ Score = Callable[[Array], float]
 
 @dataclass(frozen=True, slots=True)
 class Identified:
-    """Confusions of one variant: of every person, and of fewer people for the nominal observer and each laboratory.
-
-    `baseline` are those by skin temperature alone, the same for all variants.
-    """
+    """Confusions of a variant: of every person, of `few` (the nominal observer, each laboratory), by skin alone."""
 
     variable: Variable
     labels: tuple[str, ...]
@@ -239,10 +232,7 @@ def wave_shapes(found: Identified, alike: Sequence[Likeness]) -> tuple[Predicted
 
 
 def _main(places: dict[str, list[int]], pair: tuple[str, str], probability: Array, *, mean: bool = False) -> float:
-    """Confusion of a pair of shapes over that of either with an icon of another group.
-
-    That of the least group over that with any other icon, or the `mean` of groups over the mean of other icons.
-    """
+    """Confusion of a pair of shapes over that of either with others: of the least group, or the `mean` of groups."""
     pooled = normalised(probability.mean(axis=0))
     mixed, pairs, others = 0.5 * (pooled + pooled.T), [], []
     for group in range(len(GROUPS)):

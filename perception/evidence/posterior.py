@@ -45,13 +45,6 @@ class Posterior:
     variable: Variable = "temperature"
     left_out: frozenset[str] = frozenset()
 
-    def __post_init__(self) -> None:
-        known = {row.experiment for row in load_rows()}
-        if unknown := sorted(self.left_out - known):
-            raise ValueError(
-                f"there is no experiment {unknown[0]!r} to leave out: choose of {', '.join(sorted(known))}"
-            )
-
     @cached_property
     def fixed(self) -> Mapping[str, float]:
         """Parameters that are not inferred here, with their values."""
@@ -188,8 +181,7 @@ class LeftOut:
 def leave_each_out(whole: Maximum, progress: Callable[[int, int, str], None] | None = None) -> tuple[LeftOut, ...]:
     """Refit without each group of people in turn, from the maximum of all; rows in the order of the likelihood.
 
-    What the constants leave open is in the covariance of the refitted maximum. Laboratory offsets of an experiment
-    whose rows are gone stay at their prior, so that what a new laboratory may differ by is in it too.
+    Offsets of laboratories whose rows are gone stay at their prior, so that what a new one may differ by is in it too.
     """
     experiments = tuple(dict.fromkeys(row.people for row in load_rows()))
     results = {}

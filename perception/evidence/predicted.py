@@ -1,7 +1,6 @@
 """One predicted number with its uncertainty: parameters that nobody has measured, and people.
 
-Intervals come from laboratories that the evidence leaves possible, as `rank` draws them; experiments that no population
-was simulated for ask one person of each.
+Intervals come from laboratories that the evidence leaves possible, as `rank` draws them.
 """
 
 import math
@@ -31,11 +30,9 @@ DRAWS = 24
 class Predicted:
     """A number that a published experiment can be compared with; a prediction, not a measurement.
 
-    `value` is that of the nominal observer (median of people where there are some), None where nothing
-    was felt. `low`, `high` enclose 95 % of the observers that the assumed and calibrated intervals leave
-    possible. `draws` has the answers of those observers (inf: not felt): the k-th is the same observer in every
-    experiment of a variant that was run with as many draws, so that two predictions can be plotted against each other.
-    `baseline` is what skin temperature alone predicts (None: nothing).
+    `value` is that of the nominal observer (None: nothing felt), `low` and `high` enclose 95 % of the laboratories,
+    `draws` has their answers (inf: not felt): the k-th is the same observer in all experiments of a variant with as
+    many draws. `baseline` is what skin temperature alone predicts (None: nothing).
     """
 
     experiment: str
@@ -65,10 +62,7 @@ def laboratory_of(
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """What an experiment is asked for: quantity, channel, unit, conditions, and how a subject answers (inf: not).
-
-    `baseline` is what skin temperature alone predicts.
-    """
+    """What an experiment is asked for, how a subject answers (inf: not), and what skin temperature alone predicts."""
 
     quantity: str
     channel: str
@@ -79,11 +73,7 @@ class Asked:
 
 
 def predict(
-    experiment: str,
-    asked: Sequence[Asked],
-    variable: Variable,
-    draws: int = DRAWS,
-    seed: int = 0,
+    experiment: str, asked: Sequence[Asked], variable: Variable, draws: int = DRAWS, seed: int = 0
 ) -> tuple[Predicted, ...]:
     """Answers of the nominal observer, with the interval over `draws` plausible ones (0: none) of a seed."""
 
@@ -91,7 +81,7 @@ def predict(
         return [one.answer(person) for one in asked]
 
     nominal = answers(Observer.load(variable=variable))
-    others = list(in_order(answers, plausible_observers(draws, seed, variable=variable) if draws else ()))
+    others = list(in_order(answers, plausible_observers(draws, seed, variable) if draws else ()))
     made = []
     for place, one in enumerate(asked):
         each = tuple(found[place] for found in others)
@@ -126,9 +116,7 @@ def interval_of(each: Sequence[float]) -> tuple[float | None, float | None]:
 
 
 def plausible_laboratories(n: int, seed: int, variable: Variable) -> DrawnLaboratories:
-    """Laboratories of n draws of the posterior of a variant; a ValueError for fewer than two."""
-    if n < 2:
-        raise ValueError(f"at least two observers are needed to show an interval, not {n}")
+    """Laboratories of n draws of the posterior of a variant."""
     posterior, records = PosteriorDraws.load(variable=variable), variant_records(variable)
     return DrawnLaboratories.of(
         replace(ObserverModel.load(), records=records, posterior=posterior), USUAL_NORM, n, seed
@@ -136,7 +124,7 @@ def plausible_laboratories(n: int, seed: int, variable: Variable) -> DrawnLabora
 
 
 @lru_cache(maxsize=8)
-def plausible_observers(n: int = 32, seed: int = 0, *, variable: Variable = "temperature") -> tuple[Observer, ...]:
+def plausible_observers(n: int, seed: int, variable: Variable = "temperature") -> tuple[Observer, ...]:
     """The observers of these laboratories; the same for the same seed."""
     drawn = plausible_laboratories(n, seed, variable)
     return tuple(drawn.at(place, 1)[0] for place in range(n))

@@ -1,8 +1,6 @@
 """Short pulses: published cues of which only a summary is known to us, and invented ones that stand for them.
 
-Twenty-two cues of warm and cool pulses within 3 s were named by eleven people, and sixteen of these. Their levels, site
-and display are unknown, so that all 52 sequences of one to three pulses of two sizes are predicted here: the best 22
-and 16 of them, and, for what choosing is worth, 22 drawn by chance.
+Of 52 sequences of one to three pulses the best 22 and 16 are predicted, as many as were published, and 22 by chance.
 """
 
 from functools import lru_cache

@@ -1,7 +1,6 @@
 """Whole-body warmth: bare skin under radiant heat, for published thresholds in W/m² that no display was used for.
 
-The skin is the column of a rig without its display, still air above it; the flux is absorbed at
-the surface, from t = 0 on.
+The skin is the column of a rig without its display; the flux is absorbed at the surface, from t = 0 on.
 """
 
 from dataclasses import dataclass
@@ -31,15 +30,10 @@ class Warming:
 
 
 def radiant_warming(rig: Rig, depth_m: float) -> Warming:
-    """Warming of a rig's bare skin by 1 W/m² that is absorbed at its surface for RADIANT_S; it rises with the flux.
+    """Warming of a rig's bare skin, at `depth_m` too, by 1 W/m² that is absorbed at its surface for RADIANT_S.
 
-    `depth_m` is that of the warm receptors.
-
-    To the skin it is a display behind the film of air that became warmer by one over the film's conductance. A
-    ValueError names a rig whose column has no lump in the surface.
+    To the skin it is a display behind the film of air that became warmer by one over the film's conductance.
     """
-    if rig.column.resistance_m2K_per_W[0] > 0.0:
-        raise ValueError(f"rig {rig.name} has no lump in the surface: leave out skin.elements for radiant heat")
     behind = 1.0 / rig.ambient.film_W_per_m2K
     skin = thermode_modes(rig, (0.0, depth_m), behind)
     times_s: Array = DT_S * np.arange(round(RADIANT_S / DT_S) + 1, dtype=np.float64)
@@ -53,9 +47,8 @@ def whole_body_warmth(
 ) -> tuple[Predicted, ...]:
     """Radiant flux (W/m²) on the whole body for 3 s that is just felt as warm (d′ = 1), as Hardy & Oppel 1937 had it.
 
-    Skin and site are the forearm's, to stand for the body. Twice: with spatial summation carried on from
-    a thermode to the whole body, far beyond the areas it was measured on, and without any. The rise of the
-    surface that goes with a flux is given beside, to set the published 6.3 W/m² against 0.003 °C.
+    The forearm stands for the body; with spatial summation carried on far beyond measured areas, and without any. The
+    rise of the surface is given beside, to set the published 6.3 W/m² against 0.003 °C.
     """
     rig, warmed = _forearm(Observer.load(variable=variable))
     body = load_thresholds().one("area of the body").central

@@ -1,7 +1,6 @@
 """The shipped results of the inference: CSV tables, so that a spreadsheet opens them.
 
-Constants and predictions are written by `python -m thermicon.perception.evidence fit`; a test checks that they belong
-to the shipped evidence and priors. The ablation is a finished comparison: its first line says which version made it.
+A test checks that they belong to the shipped evidence and priors; the ablation says by which version it was made.
 """
 
 import csv
@@ -27,10 +26,7 @@ CONSTANTS, PREDICTIONS, ABLATION = "constants.csv", "predictions.csv", "ablation
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """One constant of one variant at its maximum: its value, 95 % interval and prior's 95 % interval.
-
-    `narrowed` is the SD over the prior's: 1 where the evidence says nothing.
-    """
+    """One constant at its maximum with 95 % intervals; `narrowed` is the SD over the prior's (1: nothing learnt)."""
 
     variable: str
     name: str
@@ -46,15 +42,24 @@ class Constant:
 
 
 @dataclass(frozen=True, slots=True)
-class PredictedRow:
-    """A published number with its 95 % interval, fitted by each variant, and predicted without its experiment.
-
-    Left out, constants are those of the maximum refitted without the experiment, and their error is normal around it.
-    """
+class OfRow:
+    """What belongs to a row of the likelihood."""
 
     experiment: str
     statistic: str
     channel: str
+
+    @property
+    def row(self) -> Row:
+        """The row of the likelihood."""
+        key = self.experiment, self.statistic, self.channel
+        return next(row for row in load_rows() if row.key == key)
+
+
+@dataclass(frozen=True, slots=True)
+class PredictedRow(OfRow):
+    """A published number with its 95 % interval, fitted by each variant, and predicted without its experiment."""
+
     label: str
     unit: str
     published: float
@@ -67,12 +72,6 @@ class PredictedRow:
     left_out_high: float
     score: float
     log_score: float
-
-    @property
-    def row(self) -> Row:
-        """The row of the likelihood."""
-        key = self.experiment, self.statistic, self.channel
-        return next(row for row in load_rows() if row.key == key)
 
     @property
     def log(self) -> bool:
@@ -99,11 +98,7 @@ class PredictedRow:
 
 @dataclass(frozen=True, slots=True)
 class AblatedRow:
-    """A variant without a mechanism: `difference` is its log evidence minus that of the variant with every mechanism.
-
-    A difference under about 2 says nothing. A mechanism stays if it has a source or a gain. `replaced_by` says what
-    stood in its place, `sources` where the mechanism comes from, with bars between them.
-    """
+    """A variant without a mechanism; a `difference` of log evidence to the whole under about 2 says nothing."""
 
     variable: str
     without: str

@@ -135,11 +135,7 @@ SAME_PEOPLE = {"E2": "E1", "E8": "E1"}
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A published number on the scale of its prediction: `sd` holds its error and the model's discrepancy.
-
-    `label` says in words what it is, `kind` what sort of number, `unit` in which unit `shown` gives it (its exponential
-    where it is a logarithm).
-    """
+    """A published number on the scale of its prediction; `sd` holds its error and the model's discrepancy."""
 
     key: Key
     value: float
@@ -148,10 +144,6 @@ class Row:
     unit: str
     label: str
     kind: Kind
-
-    def __post_init__(self) -> None:
-        if not self.sd > 0.0:
-            raise ValueError(f"{' '.join(self.key)}: an error above 0 is needed, not {self.sd:g}")
 
     @property
     def experiment(self) -> str:

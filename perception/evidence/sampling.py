@@ -1,7 +1,6 @@
 """The posterior of all constants: chains on several cores, thinned to equal draws.
 
-Chains do not know of each other, so that R-hat compares independent runs, and the result depends on the seed and
-not on the number of processes.
+Chains do not know of each other, so that R-hat compares independent runs.
 """
 
 import hashlib
@@ -57,10 +56,8 @@ class Sampled:
     def draws(self) -> PosteriorDraws:
         """The draws in each constant's own unit, with a header that says where they come from."""
         emcee = f"emcee {version('emcee')}, {CHAINS} chains of {self.chains.shape[1]} steps after burn-in"
-        found = self.diagnostics
-        header = header_of(
-            self.posterior, emcee, self.seed, self.likelihoods, float(found.r_hat.max()), float(found.ess.min())
-        )
+        worst = float(self.diagnostics.r_hat.max()), float(self.diagnostics.ess.min())
+        header = header_of(self.posterior, emcee, self.seed, self.likelihoods, *worst)
         return draws_of(self.posterior, self.vectors, header)
 
 
@@ -73,11 +70,7 @@ def sample(
     most_steps: int = MOST_STEPS,
     progress: Progress = lambda done, most, words: None,
 ) -> Sampled:
-    """Sample until every constant has converged with effective draws to spare, or until `most_steps` of each chain.
-
-    The same seed gives the same draws on the same computer, whose rounding they depend on. `progress` is called with
-    (likelihoods so far, the most there may be, diagnostics in words).
-    """
+    """Sample until every constant has converged with draws to spare, or for `most_steps`: the seed alone decides."""
     start, most = maximise(posterior, shipped_vector(posterior)), CHAINS * most_steps
     pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn")) if workers > 1 else nullcontext(None)
     with pool as shared:
@@ -162,10 +155,7 @@ def draws_of(posterior: Posterior, vectors: Array, header: DrawsHeader) -> Poste
 
 
 def in_the_middle(posterior: Posterior, vectors: Array) -> int:
-    """Number of the vector nearest to the medians of constants and of predicted rows, in SDs of the draws.
-
-    In as many dimensions as there are constants no draw is near the median of each.
-    """
+    """Number of the vector nearest to the medians of constants and of predicted rows together, in SDs of the draws."""
     predicted = np.array([[found[row.key] for row in posterior.rows] for found in map(posterior.predictions, vectors)])
     constants = [k for k, prior in enumerate(posterior.priors.each) if prior.mechanism != "laboratories"]
     return int((_off_centre(vectors[:, constants]) + _off_centre(predicted)).argmin())

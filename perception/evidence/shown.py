@@ -10,15 +10,7 @@ from ..kernels.parallel import Progress, step_counter
 from ..observer.channels import VARIABLES, Variable
 from ..observer.mechanisms.age import OLD_YEARS
 from .experiments import first_and_return, limits, peak_lead, rate_curve, reaction_times
-from .identified import (
-    WAVES,
-    Identified,
-    Likeness,
-    likeness,
-    show,
-    six_icons,
-    wave_shapes,
-)
+from .identified import WAVES, Identified, Likeness, likeness, show, six_icons, wave_shapes
 from .predicted import Predicted
 from .pulses import short_pulses
 from .radiant import whole_body_warmth

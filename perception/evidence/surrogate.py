@@ -37,8 +37,7 @@ LEAPS, LEAP = 10, 0.16
 class Surrogate:
     """Rows' residuals as quadratics: `offset` (rows,), `slope` (rows, n) and `curvature` (rows, n, n), symmetric.
 
-    `weights` (rows, features) are those of the `features`, where the posterior has any. Distances from the priors'
-    middles, the other residuals, are linear: `middle` (n,) and `factor` (n, n).
+    `weights` (rows, features) are those of the `features`; priors are linear: `middle` (n,) and `factor` (n, n).
     """
 
     offset: Array

@@ -1,7 +1,6 @@
 """What the observer has to explain: targets and their rows, read from `data/targets.toml`.
 
-A row names the prediction of an experiment, the published record it is compared with, and the rule
-by which it is judged. Published numbers themselves come from the table of thresholds alone.
+Published numbers themselves come from the table of thresholds alone.
 """
 
 import tomllib
@@ -35,10 +34,7 @@ MINUS = "−"
 
 @dataclass(frozen=True, slots=True)
 class Published:
-    """What was published for a row: `value`, `low`, `high` in `unit` (None: a direction only), as text and whence.
-
-    `fitted` marks what the constants were inferred from, which is no prediction.
-    """
+    """What was published for a row (no numbers: a direction only); `fitted`: the constants were inferred from it."""
 
     text: str
     source: str
@@ -52,10 +48,7 @@ class Published:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One number of a target: the prediction it names, the rule and its numbers (`value`, `low`, `high`).
-
-    `compared`: whether the published number is of the same quantity, so that the nearer prediction is the better one.
-    """
+    """One number of a target, the rule it is judged by; `compared`: what was published is the same quantity."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
 
@@ -137,10 +130,7 @@ def read_targets(text: str) -> tuple[Target, ...]:
 
 
 def published_for(row: Row, table: Table) -> Published:
-    """What a table of published numbers has for a row.
-
-    Raises `RecordError` where no record, or more than one, fits what the row names.
-    """
+    """What a table has for a row; a `RecordError` where no record, or more than one, fits what the row names."""
     if not row.published:
         return Published(row.says or "–", "" if row.says else "nothing published")
     apply = row.published_apply or (row.apply if row.apply in PAIRED else "")

@@ -1,7 +1,6 @@
 """The validation report: every published target, predicted beside reported, for every variant of the observer.
 
-No parameter is set here, and no count of passes is aimed at: a miss with its size and the mechanism
-suspected is a result.
+No count of passes is aimed at: a miss with its size and the mechanism suspected is a result.
 """
 
 from __future__ import annotations
@@ -35,10 +34,7 @@ SURE = 0.8
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """A row as one variant predicts it: what was made of the prediction, and the verdict.
-
-    `held` is the share of the draws in which the row holds; None where nothing is judged or drawn.
-    """
+    """A row as one variant predicts it, the verdict, and the share of draws in which it holds (None: not judged)."""
 
     predicted: Predicted
     verdict: Verdict
@@ -145,12 +141,7 @@ class ValidationReport(Tabled):
 
 @checked
 def validate(
-    *,
-    people: int = PEOPLE,
-    draws: int = DRAWS,
-    seed: int = 0,
-    trials: int = TRIALS,
-    progress: Progress | None = None,
+    *, people: int = PEOPLE, draws: int = DRAWS, seed: int = 0, trials: int = TRIALS, progress: Progress | None = None
 ) -> ValidationReport:
     """Predict every published target and judge it; the same arguments give the same report.
 
@@ -246,5 +237,4 @@ def _linear(one: Predicted, times: float, plus: float) -> Predicted:
 
     low, high = (moved(one.low), moved(one.high)) if times > 0.0 else (moved(one.high), moved(one.low))
     draws = tuple(times * each + plus if math.isfinite(each) else math.inf for each in one.draws)
-    about = (moved(one.value), one.unit, low, high, one.variable, one.conditions)
-    return Predicted(one.experiment, one.quantity, one.channel, *about, draws=draws, baseline=moved(one.baseline))
+    return replace(one, value=moved(one.value), low=low, high=high, draws=draws, baseline=moved(one.baseline))

@@ -26,12 +26,7 @@ def report_file(report: ValidationReport) -> dict[str, Any]:
             for section in report.sections
         ],
         "confusions": [
-            {
-                "set": name,
-                "variant": one.variable,
-                "labels": list(one.labels),
-                "probability": one.pooled.tolist(),
-            }
+            {"set": name, "variant": one.variable, "labels": list(one.labels), "probability": one.pooled.tolist()}
             for name, all_of in (("six-icons", evidence.six), ("wave-confusions", evidence.waves))
             for one in all_of
         ],

@@ -10,10 +10,9 @@ from .targets import MINUS, Published, Row, plain
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """`holds` is None for what is shown and not judged; `miss` is 0 where it holds and grows with the miss.
+    """`holds` (None: shown, not judged), the `miss` (0: none), and its size with what was asked for, as text.
 
-    Misses of one row compare between variants: they are logarithms of ratios, or differences in the unit of
-    the row. `text` says the size, with what was asked for.
+    Misses of one row compare between variants: logarithms of ratios, or differences in the unit of the row.
     """
 
     holds: bool | None

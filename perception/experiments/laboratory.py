@@ -1,9 +1,7 @@
 """One laboratory's view of a set of constants: drives of its stimuli, sensitivities of its people, answers.
 
-Everything that a published experiment needs is asked of `Laboratory`: what receptors do under its thermode, how
-sensitive its people are at its site, area and age, and when or whether they answer. Its people and trials have the same
-quasi-random numbers for every set of constants: a change of a constant then changes a prediction smoothly, which a
-search for a maximum needs.
+Its people and trials have the same quasi-random numbers for every set of constants: a change of a constant then changes
+a prediction smoothly, which a search for a maximum needs.
 """
 
 import math
@@ -81,10 +79,7 @@ def samples_of(corners: tuple[Corner, ...], end_s: float) -> Samples:
 
 
 def course_of(rise: Array, rest: float, corners: Sequence[Corner], dt_s: float, rows: int) -> Array:
-    """A course (rows,) from rest by corners of the display, for skin with a response `rise` (rows or more,) to 1 K/s.
-
-    It is a sum of ramps, one from every corner on, by how much the slope changes there.
-    """
+    """A course (rows,) by corners of the display: a sum of ramps, of the skin's response `rise` to 1 K/s."""
     course, clock, known = np.full(rows, rest), np.arange(rows), np.arange(rise.size)
     slope, start = 0.0, (0.0, 0.0)
     for corner in (*corners, None):

@@ -1,8 +1,6 @@
 """What a laboratory would measure: thresholds, times, ratings and wrong names under a condition, on the skin of a rig.
 
-The tasks are those of the published experiments that the constants were inferred from, on the skin of the rig's site,
-with its contact and area, and with the laboratory's own offset of sensitivity. People are a quasi-random crowd with the
-spreads of the draw. `measure` asks new laboratories; a pilot asks those that its data leave.
+The tasks are those of the published experiments; `measure` asks new laboratories, a pilot those that its data leave.
 """
 
 from __future__ import annotations
@@ -153,11 +151,7 @@ class Setting:
         return "forearm" if on_forearm(self.site_rig) else "hand"
 
     def laboratory(
-        self,
-        constants: Observer,
-        offsets: Sequence[float],
-        people: int = PEOPLE,
-        seed: int = SEED,
+        self, constants: Observer, offsets: Sequence[float], people: int = PEOPLE, seed: int = SEED
     ) -> Laboratory:
         """A laboratory that measures here; its people are so much more sensitive (ln), by `offsets`."""
         met = replace(constants, contact_m2K_per_W=self.contact_m2K_per_W)
@@ -169,7 +163,7 @@ def logs_of(
 ) -> tuple[Array, float]:
     """Log value of each person (people,), and the SD of the log of one trial (UNSTATED where there is none).
 
-    Forced choice is played with changes of `sizes_K`, and its threshold lies between them, linear in logarithms.
+    A threshold by forced choice lies between `sizes_K`, linear in logarithms.
     """
     site, channel, limits = setting.path_site, condition.channel, condition.method == "limits"
     gain = laboratory.gain(channel, setting.area_cm2, OWN, site, YOUNG_YEARS)
@@ -299,7 +293,7 @@ def measure(
         raise ValueError(f"an interval needs at least {LEAST_DRAWS} laboratories, not {draws}")
     rig = Rig.of(rig)
     setting, known = Setting.of(rig), posterior or PosteriorDraws.load()
-    chosen = np.linspace(0, len(known) - 1, draws).round().astype(np.int64).tolist()
+    chosen = known.spaced(draws)
     standard = np.random.default_rng(seed).standard_normal((draws, len(CHANNELS)))
     offsets = (known.values(BETWEEN_LABORATORIES)[chosen][:, None] * standard).tolist()
     shares = condition.kind == "wrong_quality"

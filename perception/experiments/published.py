@@ -1,7 +1,6 @@
-"""Every conditioning experiment, played as it was done and asked as it was asked: predictions of its statistics.
+"""Every conditioning experiment, played and asked as it was: predictions of its statistics by the keys of `rows`.
 
-A prediction has the key of its row (see `rows`): experiment, statistic and channel. Numbers on a log scale are
-logarithms. Each function takes a laboratory's view of the constants and nothing else.
+Numbers on a log scale are logarithms.
 """
 
 import math
@@ -54,10 +53,7 @@ def reaction_times(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
         five = log_medians[channel, 5]
         yield ("E1", "rt_gm_5strip_onset_clock", channel), float(five.mean())
         yield ("E1", "rt_between_sd_ln_5strip_onset_clock", channel), float(five.std())
-        yield (
-            ("E1", "rt_within_sd_ln_5strip_onset_clock", channel),
-            float(np.median(np.log(times).std(axis=1))),
-        )
+        yield (("E1", "rt_within_sd_ln_5strip_onset_clock", channel), float(np.median(np.log(times).std(axis=1))))
         exponent = float((five - log_medians[channel, 1]).mean()) / math.log(5.0)
         yield ("E1", "rt_area_exponent_onset_clock", channel), exponent
     both = _correlation(log_medians["cold", 5], log_medians["warm", 5])

@@ -71,11 +71,7 @@ class Played:
         return self.laboratory.answers_s(self.drive, samples, self.ramp.channel, gain, site=site, choice=choice)
 
     def misnamed(self, gain: float, warm_gain: float, site: str) -> Array:
-        """Share of trials (people,) in which a choice of warm or cold in haste names the wrong one.
-
-        Noise of the other channel passes first, or cold is called warm: the warmth that lingers is that of the
-        baseline.
-        """
+        """Share of trials (people,) in which a choice in haste is wrong: noise passes first, or cold is called warm."""
         laboratory, ramp = self.laboratory, self.ramp
         samples = samples_of(ramp.corners, ramp.end_s)
         mistaken = laboratory.outrun(self.drive, samples, ramp.channel, gain, site=site)

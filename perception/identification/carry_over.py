@@ -33,10 +33,7 @@ PEOPLE = 32
 
 @dataclass(frozen=True, slots=True)
 class CarryOver:
-    """How far every icon (column) feels from itself alone after every other (row): `apart` (norms, icons, icons).
-
-    In d′ from memory, as the mean of people, `gap_s` after the end of the icon before.
-    """
+    """How far every icon (column) feels from itself alone after every other (row): `apart` (norms, icons, icons)."""
 
     names: tuple[str, ...]
     gap_s: float
@@ -64,8 +61,7 @@ def carry_over(
 ) -> CarryOver:
     """Let people feel every icon of a set after every other, each followed for `end_s`, which is after its end.
 
-    What an icon leaves behind depends on who holds the gap: the driver brings the skin or the display back to its
-    baseline, or, with `tracking` `replay`, the resting current flows and nothing corrects what it leaves.
+    The driver holds skin or display in the gap, or, with `tracking` `replay`, the resting current flows uncorrected.
     """
     from thermicon.circuit.solver.simulate import duration_s, simulate_all
 

@@ -67,12 +67,7 @@ class Confusion:
 
 @checked
 def confuse(
-    d_prime: ArrayLike,
-    *,
-    lapse: ArrayLike = 0.02,
-    seed: int = 0,
-    samples: int = SAMPLES,
-    first: int = 0,
+    d_prime: ArrayLike, *, lapse: ArrayLike = 0.02, seed: int = 0, samples: int = SAMPLES, first: int = 0
 ) -> Confusion:
     """Compute confusion matrices from pairwise d′.
 
@@ -159,10 +154,7 @@ def normalised(rows: Array) -> Array:
 
 
 def shared_among_identical(named: Array, distances: Array, identical: float = IDENTICAL) -> Array:
-    """Answers shared equally among icons that are identical for a person, such as several that one does not feel.
-
-    The order of the file, or rounding, would decide among them otherwise.
-    """
+    """Answers shared equally among icons that are identical for a person; the order of the file decided otherwise."""
     same = distances <= identical
     who = np.flatnonzero((same.sum(axis=2) > 1).any(axis=1))
     if not who.size:
@@ -245,9 +237,8 @@ def name_directly(
 ) -> Confusion:
     """Confusions (people, icons, icons) of icons that are named episode by episode from the memory of an observer.
 
-    `memory` and `lapse` are multiples of memory noise and shares of guessed trials, one for each person or for all;
-    `louder` (people, icons) multiplies the noise of an icon, for what the icon before leaves behind. Noise is drawn
-    from the seed and the person's number, which counts from `first`; `samples` are trials of an icon.
+    `memory` and `lapse` are one number or one for each person; `louder` (people, icons) multiplies the noise of an
+    icon. Noise is drawn from the seed and the person's number, which counts from `first`.
     """
     from ..kernels import alignment
 

@@ -1,8 +1,7 @@
 """Perception of the designed and of the delivered icons: detection of each, and d′ to every other icon of the set.
 
-For virtual people, what the device changes at the receptors of the nominal person is added to the temperatures of every
-person, as much larger or smaller as the icon itself is for that person. That is exact for what scales with the icon,
-and wrong by about a tenth of the change otherwise, since skins differ in lag.
+What the device changes for the nominal person is added to every person's temperatures, in proportion to the icon there.
+That is exact for what scales with the icon, and wrong by about a tenth otherwise, since skins differ in lag.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ import numpy as np
 from thermicon.circuit.delivery.delivered_drive import loss_limit
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS, USUAL_NORM, Channel, Norm
+from ..observer.channels import CHANNELS, USUAL_NORM, Channel
 from ..observer.observer import Observer
 from ..observer.people import draw_people
 from ..sensation.features import receptor_C
@@ -47,10 +46,9 @@ class DeliveredChange:
 
 @dataclass(frozen=True, slots=True)
 class PerceivedChange:
-    """Effect of a device on one icon: probability of detection, and d′ to each other icon for a nominal person.
+    """Effect of a device on one icon: probability of detection, and d′ from memory to each other icon by its name.
 
-    `detection` is the mean of as many virtual `people`, or where there are none the nominal person's; `d_prime` is from
-    memory, to each other icon by its name.
+    `detection` is the mean of as many virtual `people`, or where there are none the nominal person's.
     """
 
     icon: str
@@ -64,12 +62,6 @@ class PerceivedChange:
         if not self.people:
             return "the nominal person"
         return "1 virtual person" if self.people == 1 else f"{self.people} virtual people"
-
-    def __repr__(self) -> str:
-        worst = max(self.d_prime, key=lambda pair: pair[1].drop, default=None)
-        pair = "" if worst is None else f", d′ to {worst[0]} {worst[1].designed:.3g} → {worst[1].delivered:.3g}"
-        detected = f"detected {self.detection.designed:.3f} → {self.detection.delivered:.3f} by {self.detected_by}"
-        return f"PerceivedChange({self.icon}: {detected}{pair})"
 
     def losses(self) -> tuple[str, ...]:
         """One sentence for every drop that exceeds the stated loss."""
@@ -100,13 +92,9 @@ class PerceivedChange:
 
 
 def judge_delivered(
-    names: Sequence[str],
-    designed: Sequence[Trace],
-    delivered: Sequence[Trace],
-    observer: Observer | None = None,
-    norm: Norm = USUAL_NORM,
+    names: Sequence[str], designed: Sequence[Trace], delivered: Sequence[Trace]
 ) -> tuple[PerceivedChange, ...]:
-    """Compare designed and delivered icons of a set for a nominal person, or another observer.
+    """Compare designed and delivered icons of a set for a nominal person.
 
     Each icon is compared with the others as they were designed, and, delivered, with the others as they are delivered;
     all traces have the same rows.
@@ -118,36 +106,23 @@ def judge_delivered(
     >>> judge_delivered(["cooling-step", "warming-step"], traces, traces)[0].losses()
     ()
     """
-    person = Observer.load() if observer is None else observer
-    percepts = [[perceive(trace, person) for trace in traces] for traces in (designed, delivered)]
-    before, after = (_d_primes(each, names, person, norm) for each in percepts)
-    return tuple(
-        PerceivedChange(
-            name,
-            DeliveredChange(percepts[0][k].detected_probability, percepts[1][k].detected_probability),
-            tuple(
-                (other, DeliveredChange(float(before[k, j]), float(after[k, j])))
-                for j, other in enumerate(names)
-                if j != k
-            ),
-        )
-        for k, name in enumerate(names)
-    )
+    percepts = [[perceive(trace) for trace in traces] for traces in (designed, delivered)]
+    before, after = (_d_primes(each, names) for each in percepts)
+    found = []
+    for k, name in enumerate(names):
+        detection = DeliveredChange(*(each[k].detected_probability for each in percepts))
+        apart = [DeliveredChange(*pair) for pair in zip(before[k].tolist(), after[k].tolist(), strict=True)]
+        others = tuple((other, apart[j]) for j, other in enumerate(names) if j != k)
+        found.append(PerceivedChange(name, detection, others))
+    return tuple(found)
 
 
 def detected_as_delivered(
-    delivery: DeliveredDrive,
-    designed: Trace,
-    delivered: Trace,
-    *,
-    end_s: float | None = None,
-    people: int = PEOPLE,
+    delivery: DeliveredDrive, designed: Trace, delivered: Trace, *, end_s: float | None = None, people: int = PEOPLE
 ) -> DeliveredChange:
     """Probability that a person drawn at random reports an icon, as designed (as in `rank`) and as delivered.
 
-    `designed` and `delivered` are its traces on the nominal rig, on the clock of the file. `end_s` is when the run of
-    the set ends (None: 10 s after this icon). Raises `RigError` where the skin of a person cannot be held at the
-    icon's baseline.
+    Traces are on the nominal rig and the clock of the file; `end_s` is when the run of the set ends (None: 10 s after).
     """
     from thermicon.circuit.solver.simulate import duration_s
 
@@ -167,10 +142,7 @@ def detected_as_delivered(
 
 
 def _change(met_K: Array, channel: Channel, designed: Trace, delivered: Trace, at_s: Array) -> Array:
-    """What the device changes at the receptors of people (people, icons, n_time), K, who meet the icon as `met_K`.
-
-    The nominal change is multiplied by the least-squares ratio of a person's icon to the nominal one.
-    """
+    """What the device changes (people, icons, n_time), K: for the nominal person, in proportion to each `met_K`."""
     before, after = (np.interp(at_s, each.time_s, receptor_C(each, channel)) for each in (designed, delivered))
     icon = before - before[0]
     size = float(icon @ icon)
@@ -178,6 +150,6 @@ def _change(met_K: Array, channel: Channel, designed: Trace, delivered: Trace, a
     return np.asarray(gain * (after - before))
 
 
-def _d_primes(percepts: Sequence[Percept], names: Sequence[str], person: Observer, norm: Norm) -> Array:
+def _d_primes(percepts: Sequence[Percept], names: Sequence[str]) -> Array:
     felt = np.array([p.psi_cold for p in percepts]), np.array([p.psi_warm for p in percepts])
-    return dprimes_from_memory(felt, felt, percepts[0].dt_s, person, norm, (names, names))
+    return dprimes_from_memory(felt, felt, percepts[0].dt_s, Observer.load(), USUAL_NORM, (names, names))

@@ -16,10 +16,7 @@ RUNGS = 4
 
 
 def rungs(observers: Iterable[Observer], corneum_m: ArrayLike) -> tuple[Both[float], ...]:
-    """Depths (m) to simulate for observers, of whom there are two or more, in skin with (people,) m of stratum corneum.
-
-    They lie between the least and the greatest as the nodes of Chebyshev do, where a polynomial errs least.
-    """
+    """Depths (m) to simulate for observers in skin with (people,) m of stratum corneum: Chebyshev's nodes."""
     thin, thick = float(np.min(corneum_m)), float(np.max(corneum_m))
     ends = np.array([[each.depths_m(thin), each.depths_m(thick)] for each in observers])
     low, high = ends[:, 0].min(axis=0), ends[:, 1].max(axis=0)
@@ -28,10 +25,7 @@ def rungs(observers: Iterable[Observer], corneum_m: ArrayLike) -> tuple[Both[flo
 
 
 def between(depths_m: Sequence[float], rungs_C: Array, at_m: Array) -> Array:
-    """Temperatures (people, icons, n_time) at a depth of each person (people,), from those at some depths.
-
-    `rungs_C` has shape (depths, people, icons, n_time); the polynomial through all of them is read.
-    """
+    """Temperatures (people, icons, n_time) at each person's depth: the polynomial through those at some depths."""
     weights = np.ones((len(depths_m), at_m.size))
     for k, own in enumerate(depths_m):
         for other in (*depths_m[:k], *depths_m[k + 1 :]):

@@ -1,7 +1,6 @@
 """What is remembered of icons as episodes: stretches of one quality, in their order, each with its features.
 
-Features are intensity, rate of onset and length, and the pause before. Two forms: `episodes` compares intensities in
-logarithms and places icons symmetrically; `naming` compares ratings and names each felt trial directly.
+Two forms: `episodes` compares intensities in logarithms and places icons symmetrically; `naming` compares ratings.
 """
 
 from __future__ import annotations
@@ -37,11 +36,10 @@ class EpisodesError(InputError):
 
 @dataclass(frozen=True, slots=True)
 class Episode:
-    """One episode of an icon as it is remembered, on the receptor clock.
+    """One episode as it is remembered, on the receptor clock; drives are multiples of threshold.
 
-    `peak` is its strongest drive in multiples of threshold, `rate_per_s` the steepest rise of that, `length_s` the time
-    above half the peak, `pause_s` the time since the episode before (or since the cue began). `cut` says that the end
-    of the trace cuts it, so that its length counts for nothing.
+    The length is above half the peak, the pause since the episode before, or since the cue began. `cut` by the end of
+    the trace, the length counts for nothing.
     """
 
     channel: Channel
@@ -55,32 +53,19 @@ class Episode:
 
 @dataclass(frozen=True, slots=True)
 class Episodes:
-    """Episodes of many people and icons: `features` (people, icons, most, features), `counts` (people, icons).
-
-    Columns of the features are those of `kernels.episodes`.
-    """
+    """Episodes: `features` (people, icons, most, features) in the columns of `kernels.episodes`, and their `counts`."""
 
     features: Array
     counts: NDArray[np.int64]
 
     @classmethod
     def of(
-        cls,
-        psi_cold: ArrayLike,
-        psi_warm: ArrayLike,
-        dt_s: float,
-        observer: Observer,
-        names: ArrayLike = "",
+        cls, psi_cold: ArrayLike, psi_warm: ArrayLike, dt_s: float, observer: Observer, names: ArrayLike = ""
     ) -> Episodes:
-        """Episodes of sensations (people, icons, n_time), of icons whose names broadcast to (people, icons).
-
-        Raises `EpisodesError` for an icon that is felt as more episodes than are compared.
-        """
+        """Episodes of sensations (people, icons, n_time); `names` of the icons are for an `EpisodesError`."""
         from ..kernels import episodes as kernel
 
         cold, warm = (np.ascontiguousarray(psi, dtype=np.float64) for psi in (psi_cold, psi_warm))
-        if cold.ndim != 3 or cold.shape != warm.shape:
-            raise ValueError(f"sensations must have shape (people, icons, n_time), not {cold.shape} and {warm.shape}")
         people, icons, _ = cold.shape
         features = np.zeros((people, icons, kernel.USUAL, kernel.FEATURES))
         counts = np.zeros((people, icons), dtype=np.int64)
@@ -165,8 +150,7 @@ def episode_distances(one: Episodes, other: Episodes, observer: Observer, norm: 
 def distance_shares(one: Episodes, i: int, other: Episodes, j: int, observer: Observer, norm: Norm) -> dict[str, float]:
     """Parts of d′² between two icons for the first person, by the names of `PARTS`, without their sign.
 
-    Icons with the same qualities in the same order differ by features, also where those differ so much that the
-    alignment leaves episodes without a partner: then d′² is divided as the features at equal places are.
+    Where the alignment leaves out episodes of the same qualities in the same order, d′² is divided as the features are.
     """
     from ..kernels import alignment
     from ..kernels.episodes import QUALITY
@@ -200,10 +184,7 @@ def dprimes_from_memory(
     norm: Norm,
     names: tuple[ArrayLike, ArrayLike],
 ) -> Array:
-    """d′ (n, m) of every icon of one to every icon of the other, on one clock, for the nominal memory.
-
-    `one` and `other` are sensations (icons, n_time) of cold and of warm.
-    """
+    """d′ (n, m) of icons to icons for the nominal memory, from sensations (icons, n_time) of cold and of warm."""
     first, second = (
         Episodes.of(cold[None], warm[None], dt_s, observer, called)
         for (cold, warm), called in zip((one, other), names, strict=True)

@@ -1,14 +1,13 @@
 """What a new laboratory will find: a prediction repeated with draws from the posterior, people and laboratory included.
 
-Each draw invites a random sample of the same few people. Draws are laid about the prediction for many people: what a
-draw adds is its difference from the nominal observer with the same people and noise.
+Each draw invites a sample of the same few people, and adds its difference from the nominal observer with these.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import astuple, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -42,9 +41,8 @@ NEW_LABORATORY = (
 class NewLaboratory:
     """95 % intervals of what a new laboratory will find: people, constants and laboratory together.
 
-    Proportion correct and bits of the set, as the mean over `people` invited, detected share of every icon in file
-    order, its onset in the draws in which it is felt (None where it is not felt in most), d′ of every pair (icons,
-    icons) and how often it is `confused`, on the diagonal named correctly, lower and upper.
+    Scores are means over `people` invited, `onset_s` is None where an icon is not felt in most draws, `d_prime` and
+    `confused` (icons, icons; the diagonal: named correctly) are lower and upper ends.
     """
 
     draws: int
@@ -73,10 +71,7 @@ class NewLaboratory:
         }
 
     def ahead_of(self, other: NewLaboratory) -> float:
-        """How often a person names these icons better than the other's, on the same draws; a tie counts half.
-
-        People are paired where both sets were judged by equally many.
-        """
+        """How often a person names these icons better than the other's, on the same draws; a tie counts half."""
         mine, theirs = self.each.persons_correct[..., None], other.each.persons_correct[:, None]
         if mine.shape[1] == theirs.shape[2]:
             mine, theirs = self.each.persons_correct, other.each.persons_correct
@@ -127,17 +122,13 @@ def new_laboratory(
 ) -> NewLaboratory:
     """Intervals about `predicted`, from `draws` sets of constants, evenly spaced; `step` is called after each.
 
-    The first few people of the crowd feel the icons, played on the rig until `end_s`, at every EVERY-th instant; each
-    draw adds to the prediction what it changes against the nominal observer on the same people and noise. Norm,
-    tracking, task and seed are as in `rank`.
-    Raises `ValueError` for fewer than two draws, which have no interval, and for an observer without draws.
+    The first few people of the crowd feel the icons, at every EVERY-th instant; the rest is as in `rank`. Raises
+    `ValueError` for fewer than two draws, which have no interval, and for an observer without draws.
     """
     if draws < 2:
         raise ValueError(f"an interval needs at least two draws of the constants, not {draws}")
-    own = ObserverModel.load() if model is None else model
-    if own.posterior is None:
-        raise ValueError(f"{own.name} has no posterior draws, from which an interval for a new laboratory is made")
-    count = len(icons)
+    own, count = ObserverModel.of(model), len(icons)
+    status = own.drawn.header.status
     persons = crowd.part(0, min(len(crowd), people_for_intervals(count)))
     few = ReceptorTemperatures.at_depths(
         icons, persons, rig, rungs([own.nominal, *own.some_draws(draws)], persons.corneum_m(rig)), end_s,
@@ -148,37 +139,30 @@ def new_laboratory(
     )
     # Means over all the people of the nominal observer: their sample belongs to the draw.
     centre = scored(few, persons, own.nominal, norm, seed, task, np.arange(len(persons)))
-    about: tuple[Any, ...] = astuple(predicted)
-    most = (1.0, math.log2(count), 1.0, math.inf, math.inf, 1.0)
-    raw = (each.proportion_correct, each.information_bits, each.detected, each.d_prime, each.onset_s, each.confused)
-    correct, bits, detected, apart, onset, confused = (
-        np.clip(values + (nominal - own_values), 0.0, top)
-        for values, nominal, own_values, top in zip(raw, about, centre[:6], most, strict=True)
-    )
-    apart_ends, confused_ends = (tuple(np.percentile(values, COVER, axis=0)) for values in (apart, confused))
+    tops = (1.0, math.log2(count), 1.0, math.inf, math.inf, 1.0)
+    moved: dict[str, Any] = {}
+    for name, own_values, top in zip(Nominal.__slots__, centre[:6], tops, strict=True):
+        moved[name] = np.clip(getattr(each, name) + (getattr(predicted, name) - own_values), 0.0, top)
+    apart, confused = (tuple(np.percentile(moved[name], COVER, axis=0)) for name in ("d_prime", "confused"))
     return NewLaboratory(
         draws=draws,
         people=len(persons),
-        posterior=own.posterior.header.status,
-        proportion_correct=_ends(correct),
-        information_bits=_ends(bits),
-        detected=tuple(_ends(detected[:, icon]) for icon in range(count)),
+        posterior=status,
+        proportion_correct=_ends(moved["proportion_correct"]),
+        information_bits=_ends(moved["information_bits"]),
+        detected=tuple(_ends(each) for each in moved["detected"].T),
         # Over the draws in which an icon is felt, where these are the most.
         onset_s=tuple(
-            _ends(each[np.isfinite(each)]) if 2 * np.isfinite(each).sum() > each.size else None for each in onset.T
+            _ends(each[np.isfinite(each)]) if 2 * np.isfinite(each).sum() > each.size else None
+            for each in moved["onset_s"].T
         ),
-        d_prime=apart_ends,
-        confused=confused_ends,
+        d_prime=apart,
+        confused=confused,
         each=replace(
             each,
-            proportion_correct=correct,
-            information_bits=bits,
-            detected=detected,
-            d_prime=apart,
-            onset_s=onset,
-            confused=confused,
+            **moved,
             persons_correct=np.clip(each.persons_correct + (predicted.proportion_correct - centre[0]), 0.0, 1.0),
-            persons_bits=np.clip(each.persons_bits + (predicted.information_bits - centre[1]), 0.0, most[1]),
+            persons_bits=np.clip(each.persons_bits + (predicted.information_bits - centre[1]), 0.0, tops[1]),
         ),
     )
 

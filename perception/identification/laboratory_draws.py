@@ -1,8 +1,7 @@
 """A set as every draw of the posterior predicts it: draws with their own people, laboratory and memory.
 
-Every draw is one consistent set of constants. It brings its own spread between people, an offset of the laboratory
-drawn from the spread between laboratories, and memory: its own, where the draws are those of one laboratory, otherwise
-drawn from its intervals, which no published posterior knows of.
+A draw brings its own spread between people, an offset of the laboratory, and memory: its own, or, since no published
+posterior knows of it, drawn from its intervals.
 """
 
 from __future__ import annotations
@@ -94,11 +93,7 @@ OFFSETS = ("laboratory, cold", "laboratory, warm")
 
 @dataclass(frozen=True, slots=True)
 class DrawnLaboratories:
-    """One laboratory for each of some evenly spaced draws of a variant.
-
-    `values` (n, constants) belong to `names`: the constants of the draw, memory, and how much more sensitive (ln) its
-    people are.
-    """
+    """One laboratory for each of some evenly spaced draws: `values` (n, constants) of `names`, offsets in ln."""
 
     variable: Variable
     names: tuple[str, ...]
@@ -109,12 +104,8 @@ class DrawnLaboratories:
     @classmethod
     def of(cls, model: ObserverModel, norm: Norm, draws: int, seed: int) -> DrawnLaboratories:
         """As many laboratories of a model as `draws`; a ValueError for an observer without draws."""
-        held = model.posterior
-        if held is None:
-            raise ValueError(
-                f"{model.name} has no posterior draws, from which an interval for a new laboratory is made"
-            )
-        chosen = np.linspace(0, len(held) - 1, draws).round().astype(np.int64)
+        held = model.drawn
+        chosen = held.spaced(draws)
         free = [p for p in memory_parameters(norm, records=model.records) if p.name not in held.memory_names]
         shares = latin(len(free), draws, seed).tolist()
         memory = [[p.at(share) for p, share in zip(free, row, strict=True)] for row in shares]
@@ -159,12 +150,10 @@ SAMPLES, LEAST, NAMED = 512, 128, 8192
 class LaboratoryDraws:
     """Predictions of a set by every draw: what `sensitivity` reads and intervals are made of.
 
-    `values` (draws, constants) belong to `names`, and `acts` (constants,) says which of them take part in how the set
-    is named on its rig; `proportion_correct` and `information_bits` (draws,) are means over
-    the people of a draw, `detected` and `onset_s` (draws, icons; NaN where an icon is not felt), `d_prime` (draws,
-    icons, icons) their medians, `confused` (draws, icons, icons) the mean of both ways, correct on the diagonal.
-    `persons_correct`, `persons_bits` (draws, people) and `persons_detected` (draws,
-    people), of the icon that a person detects least, are those of the people of a draw one by one.
+    `values` (draws, constants) belong to `names`; `acts` (constants,) says which take part in how the set is named.
+    Scores (draws,) are means over the people of a draw, `detected`, `onset_s` (draws, icons; NaN: not felt) and
+    `d_prime` (draws, icons, icons) medians, `confused` the mean of both ways; `persons_…` (draws, people) are those of
+    single people, detection by the icon that a person detects least.
     """
 
     names: tuple[str, ...]
@@ -199,8 +188,7 @@ def laboratory_draws(
     """Predictions by `draws` draws, evenly spaced; the same arguments give the same numbers.
 
     `played` says what the receptors of the persons go through in a draw, by its number. Every draw has its own people
-    with the same seed, and invites a random sample of them (`resampled`), or all of them once. Norm, task and seed are
-    as in `rank`; `step` is called after each draw. Raises `ValueError` for an observer without draws.
+    with the same seed, and invites a random sample of them (`resampled`), or all of them once.
     """
     laboratories, count = DrawnLaboratories.of(model, norm, draws, seed), len(persons)
     invited = laboratories.invited(count) if resampled else np.tile(np.arange(count), (draws, 1))
@@ -222,10 +210,7 @@ def laboratory_draws(
 def _acting(
     laboratories: DrawnLaboratories, played: ReceptorTemperatures, count: int, norm: Norm, seed: int, task: Task
 ) -> NDArray[np.bool_]:
-    """Whether each constant (constants,) changes what a few people remember or say if it alone is another draw's.
-
-    Of the first draw, each constant in turn takes the value that lies farthest from its own.
-    """
+    """Whether each constant (constants,), moved alone as far as the draws go, changes what a few people say."""
     few, values = played.first(count), laboratories.values
 
     def named(constants: Array) -> Array:
@@ -252,28 +237,17 @@ def scored(
     task: Task,
     invited: NDArray[np.int64],
 ) -> tuple[Array, ...]:
-    """Proportion correct, bits, detected, d′, onset and confusions (icons, icons) of those who are invited; and
-
-    correct, bits and least detection (people,) of each of them.
-    """
+    """Scores of those who are invited (correct, bits, detected, d′, onset, confusions), and of each single one."""
     samples = min(SAMPLES, max(LEAST, NAMED // len(few.names)))
     felt = respond(few, people, observer, times=True)
     d_prime, confusion = identify(felt, norm, people, observer, seed, samples, task=task)
     correct, bits = proportion_correct(confusion.probability), information_bits(confusion.probability)
     named, found = confusion.probability[invited].mean(axis=0), felt.detected
-    reported = found.reported_sum() if found.reported is None else found.reported[invited].sum(axis=0)
+    reported = found.courses[invited].sum(axis=0)
     reports = pooled(found.probability[invited], found.cold_share[invited], reported, found.dt_s)
-    return (
-        correct[invited].mean(),
-        bits[invited].mean(),
-        reports.probability,
-        np.median(d_prime[invited], axis=0),
-        reports.onset_s,
-        0.5 * (named + named.T),
-        correct[invited],
-        bits[invited],
-        found.probability[invited].min(axis=1),
-    )
+    correct, bits, apart = correct[invited], bits[invited], np.median(d_prime[invited], axis=0)
+    of_set = correct.mean(), bits.mean(), reports.probability, apart, reports.onset_s, 0.5 * (named + named.T)
+    return *of_set, correct, bits, found.probability[invited].min(axis=1)
 
 
 def people_for_intervals(icons: int) -> int:

@@ -1,7 +1,6 @@
 """The perceptual map: icons as points of a plane whose distances come as near to the pairwise d′ as a plane allows.
 
-Classical scaling gives a start, SMACOF (majorisation of the stress) improves it. The orientation of the map is a
-convention, or follows a reference map, so that an edited set is found where it was before.
+Classical scaling gives a start, SMACOF improves it; a reference map gives the orientation, else a convention.
 """
 
 from __future__ import annotations
@@ -15,8 +14,7 @@ from numpy.typing import ArrayLike
 
 from thermicon.icons.drawn import Drawn
 
-from ..arrays import Array
-from ..kernels.parallel import own_arrays
+from ..arrays import Array, own_arrays
 
 if TYPE_CHECKING:
     from ..ranking.ranking import Ranking
@@ -31,10 +29,9 @@ ALIKE = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class PerceptualMap(Drawn):
-    """Icons as points (icons, 2) of a plane, in d′, and how far the plane bends the distances.
+    """Icons as points (icons, 2) of a plane, in d′, and how far the plane bends the distances: Kruskal's stress-1.
 
-    `stress` is Kruskal's stress-1 (0: the distances are exact), `covariance` (icons, 2, 2) the scatter in d′² over the
-    maps of single `people`, each turned and shifted onto this one; None for one person.
+    `covariance` (icons, 2, 2) is the scatter in d′² over the maps of single `people`; None for one person.
     """
 
     labels: tuple[str, ...]
@@ -52,29 +49,18 @@ class PerceptualMap(Drawn):
 
 
 def perceptual_map(
-    d_prime: ArrayLike,
-    labels: Sequence[str],
-    people: ArrayLike | None = None,
-    reference: PerceptualMap | None = None,
+    d_prime: ArrayLike, labels: Sequence[str], people: ArrayLike | None = None, reference: PerceptualMap | None = None
 ) -> PerceptualMap:
     """Lay icons out in a plane whose distances are as near as possible to pairwise d′ (icons, icons).
 
     `people` are d′ (n, icons, icons) of single people, for the ellipses. With a reference the map is turned, mirrored
-    and shifted onto it as well as the icons of the same name allow (two or more), and never stretched. Raises
-    `ValueError` for distances that are not symmetric, finite and 0 between an icon and itself.
+    and shifted onto it as well as the icons of the same name allow (two or more), and never stretched.
 
     >>> found = perceptual_map([[0, 3, 4], [3, 0, 5], [4, 5, 0]], ["a", "b", "c"])
     >>> round(found.stress, 6), float(np.linalg.norm(found.points[1] - found.points[2]).round(3))
     (0.0, 5.0)
     """
-    wanted = np.asarray(d_prime, dtype=np.float64)
-    icons = len(labels)
-    if wanted.shape != (icons, icons) or not icons:
-        raise ValueError(f"{icons} icons need a matrix of {icons} × {icons} distances, not {wanted.shape}")
-    if not np.isfinite(wanted).all() or (wanted < 0).any():
-        raise ValueError("distances on a map must be finite and not negative")
-    if np.diagonal(wanted).any() or not np.allclose(wanted, wanted.T, rtol=1e-9, atol=1e-12):
-        raise ValueError("distances on a map must be symmetric, and 0 between an icon and itself")
+    wanted, icons = np.asarray(d_prime, dtype=np.float64), len(labels)
     points = settled(smacof(wanted, classical(wanted)))
     if reference is not None:
         place = {name: k for k, name in enumerate(reference.labels)}
@@ -92,10 +78,7 @@ def perceptual_map(
 
 
 def map_of(ranking: Ranking, reference: PerceptualMap | None = None) -> PerceptualMap:
-    """Lay out the icons of a ranking by their median d′, with the spread over its first people.
-
-    With a reference, another map, it is laid onto that.
-    """
+    """Lay out the icons of a ranking by their median d′, with the spread over its first people, onto a reference."""
     few = max(2, min(MOST_PEOPLE, MOST_CELLS // len(ranking.icons) ** 2))
     return perceptual_map(ranking.d_prime, ranking.labels, ranking.felt.d_prime[:few], reference)
 
@@ -112,10 +95,7 @@ def classical(distances: Array) -> Array:
 
 
 def smacof(distances: Array, start: Array, steps: int = STEPS, tolerance: float = TOLERANCE) -> Array:
-    """Points (..., icons, 2) improved by majorisation from a start; no step raises the stress.
-
-    `distances` (..., icons, icons). Ends when no map's stress falls by more than `tolerance` in a step.
-    """
+    """Points (..., icons, 2) improved by majorisation from a start, until no stress falls by more than `tolerance`."""
     points = np.array(start, dtype=np.float64)
     icons, diagonal = points.shape[-2], np.arange(points.shape[-2])
     before = stress(distances, points)
@@ -151,10 +131,9 @@ def laid_onto(points: Array, some: Array, target: Array) -> Array:
 
 
 def settled(points: Array) -> Array:
-    """The map about its centre, its longer axis across, its first icon to the left and above.
+    """The map about its centre, its longer axis across, its first icon off the centre to the left and above.
 
-    Of a map as wide as it is high the first icon lies on the axis across. An icon in the centre has no side: then the
-    next one counts.
+    Of a map as wide as it is high that icon lies on the axis across.
     """
     centred = points - points.mean(axis=0)
     size = float(np.abs(centred).max())

@@ -65,10 +65,7 @@ def information_bits(confusion: ArrayLike) -> Array:
 
 
 def plugin_bits(confusion: ArrayLike, trials: int, seed: int = 0, experiments: int = 1000) -> float:
-    """What experiments of `trials` trials report in the mean, by the plug-in estimator on their counts, bits.
-
-    With `confusion` of shape (people, m, m), every person takes part in `experiments` experiments.
-    """
+    """What each person's `experiments` of `trials` trials report in the mean by the plug-in estimator, bits."""
     people = np.asarray(confusion, dtype=np.float64)
     return float(experiments_bits(people[None] if people.ndim == 2 else people, trials, seed, experiments).mean())
 
@@ -76,8 +73,7 @@ def plugin_bits(confusion: ArrayLike, trials: int, seed: int = 0, experiments: i
 def experiments_bits(confusion: Array, trials: int, seed: int, experiments: int, first: int = 0) -> Array:
     """Bits that each experiment of a person reports, (people, experiments), from `confusion` (people, m, m).
 
-    Presentations are spread over the icons as evenly as possible.
-    A person's experiments depend on the seed and on the person's number, which counts from `first`.
+    Icons are presented as evenly as possible. Chance depends on the seed and on the person's number, from `first`.
     """
     if trials < 1:
         raise ValueError(f"an experiment needs at least one trial, not {trials}")

@@ -45,8 +45,7 @@ class ReceptorTemperatures:
     """Temperatures at the receptors of every person: °C; clock in s, area in m².
 
     `rungs_C` has those of cold and of warm receptors, (depths, people, icons, n_time) each: at `depths_m`, between
-    which the receptors of many observers lie, or, where that is empty, of the one observer they were simulated for.
-    `corneum_m` (people,) is each person's stratum corneum, m; `names` are those of the icons, for messages.
+    which the receptors of many observers lie, or, where that is empty, of the one they were simulated for.
     """
 
     rungs_C: tuple[Array, Array]
@@ -136,17 +135,9 @@ class PopulationResponse:
 
 
 def respond(
-    played: ReceptorTemperatures,
-    crowd: People,
-    observer: Observer,
-    *,
-    detection: bool = True,
-    times: bool = False,
+    played: ReceptorTemperatures, crowd: People, observer: Observer, *, detection: bool = True, times: bool = False
 ) -> PopulationResponse:
-    """Episodes of every icon for every person, and whether it is reported.
-
-    Without `detection` it takes a third of the time; `times` adds response times to it.
-    """
+    """Episodes of every icon for every person, and whether it is reported (`detection`), and when (`times`)."""
     cold, warm, dt = _sensations(played, crowd, observer)
     found = _detection(cold, warm, dt, played.site, crowd, observer, times) if detection else None
     return PopulationResponse(Episodes.of(cold, warm, dt, observer, played.names), found)
@@ -209,10 +200,7 @@ def identify(
     first: int = 0,
     task: Task = USUAL,
 ) -> tuple[Array, Confusion]:
-    """Pairwise d′ from memory (people, icons, icons) by one norm, and the confusions that follow.
-
-    `first` is the number of the first person, on which the noise depends.
-    """
+    """Pairwise d′ from memory (people, icons, icons), and confusions with the noise of people numbered from `first`."""
     d_prime = memory_dprime(felt, norm, crowd.memory, observer, task)
     if norm == "naming":
         named = name_directly(

@@ -1,9 +1,7 @@
 """The baseline that the model has to beat: a person who goes by the temperature of the skin and nothing else.
 
-A change is noticed at one size, whatever its rate, area and method. Icons differ by the root mean square of the
-difference of their skin temperatures until the longer of the two has ended, over one noise in K, and are named after
-the nearest point, as by the model. The noise is set by the rate task, exactly as that of memory is (`evidence.task`).
-Skin temperature has no delay and no scale of strength, so that it predicts no reaction times, lags and ratings.
+A change is noticed at one size; icons differ by the root mean square of the difference of their skin temperatures
+over one noise in K, which the rate task sets, exactly as that of memory (`evidence.task`).
 """
 
 from __future__ import annotations

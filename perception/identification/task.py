@@ -1,8 +1,6 @@
 """The identification task: whether the icon before is still felt; and the noise of memory, from a published task.
 
-The rate task: Bergmann Tiest & Kappers (2009) found that people distinguish two rates when they differ by a fixed
-fraction, whatever the rate and nearly whatever the span. Simulated through this observer's own distance, the fraction
-sets memory noise.
+People distinguish two rates that differ by a fixed fraction, whatever rate and span (Bergmann Tiest & Kappers 2009).
 """
 
 import itertools
@@ -69,10 +67,7 @@ def memory_record(variant: str, value: float, low: float, high: float) -> Record
 
 
 def _noise_of(episodes: Episodes, proportion: float, observer: Observer) -> float:
-    """Memory noise at which a condition comes out with a proportion correct, Φ(d′/√2) in a two-interval choice.
-
-    Intensity is remembered as well as rate.
-    """
+    """Memory noise at which a condition comes out with a proportion correct, Φ(d′/√2) in a two-interval choice."""
     from scipy.optimize import brentq
 
     wanted = math.sqrt(2.0) * NormalDist().inv_cdf(proportion)
@@ -91,10 +86,7 @@ def _noise_of(episodes: Episodes, proportion: float, observer: Observer) -> floa
 
 
 def _felt(known: Table, observer: Observer) -> Iterator[tuple[Array, Array, float]]:
-    """Cold and warm sensations (2, n_time) of the published rate discrimination, and the step of their clock in s.
-
-    Every rate and span, against a rate that is larger by the fraction.
-    """
+    """Cold and warm sensations (2, n_time) of every rate and span of the task, and the step of their clock in s."""
     fraction = known.one("rate Weber fraction").central
     rates, spans = known.one("rate of the rate task").interval, known.one("span of the rate task").interval
     for rate, span in itertools.product(rates, spans):

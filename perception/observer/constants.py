@@ -1,7 +1,6 @@
 """Names of constants: the one place that knows how files, draws and priors call the fields of the mechanisms.
 
-A mechanism declares its constants as fields with `constant`. From these declarations an observer is built, a file of
-records is read, and a table of draws is checked.
+From fields declared with `constant` an observer is built, a file of records is read, and a table of draws is checked.
 """
 
 from __future__ import annotations
@@ -105,7 +104,7 @@ def record_of(table: Table, kind: Any, field: str, channel: Channel | None = Non
 def values_in(table: Table, kind: Any, variable: Variable) -> dict[str, Any]:
     """Values of a table by name; a variant's own number stands under the quantity's name with the variant's ending.
 
-    Constants of laboratory tasks and those with a default may be missing. Any other is a `RecordError`.
+    What is missing is a `RecordError`, but for constants of laboratory tasks and those with a default.
     """
     ending, there, found = source_of(variable), {record.quantity for record in table}, {}
     for each in constants_of(kind, variable):

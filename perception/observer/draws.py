@@ -1,8 +1,7 @@
 """Draws from the posterior of all constants: what the evidence leaves open, one consistent set of constants a draw.
 
-The shipped tables are written by `thermicon.perception.evidence` and read by `draws_file`. Constants of one draw belong
-together: where the evidence does not separate two of them, they trade off from draw to draw. Memory is not part of the
-inference and stays that of the shipped observer, except in draws of one laboratory, whose answers say something of it.
+Where the evidence does not separate two constants, they trade off from draw to draw. Memory stays that of the shipped
+observer, except in draws of one laboratory, whose answers say something of it.
 """
 
 from __future__ import annotations
@@ -18,8 +17,7 @@ import numpy as np
 from thermicon.circuit.records import Table
 from thermicon.icons.near_words import did_you_mean
 
-from ..arrays import Array
-from ..kernels.parallel import own_arrays
+from ..arrays import Array, own_arrays
 from .channels import CHANNELS, Variable, check_variable
 from .constants import BETWEEN_LABORATORIES, name_of
 from .draws_file import DrawsHeader, read_draws, shipped_file
@@ -53,19 +51,12 @@ class PosteriorDraws:
         if not self.memory_names:
             object.__setattr__(self, "memory", np.empty((len(self.draws), 0)))
         own_arrays(self, "draws", "memory")
-        if self.draws.ndim != 2 or self.draws.shape[1] != len(self.names) or not self.draws.shape[0]:
-            raise ValueError(f"draws of {len(self.names)} constants need as many columns, not {self.draws.shape}")
-        if self.memory.shape != (len(self.draws), len(self.memory_names)):
-            raise ValueError(f"memory of {len(self.draws)} draws needs as many rows, not {self.memory.shape}")
-        if not np.isfinite(self.draws).all() or not np.isfinite(self.memory).all():
-            raise ValueError("every constant of every draw must be a finite number")
 
     @classmethod
     def load(cls, path: Path | str | None = None, *, variable: Variable = "temperature") -> PosteriorDraws:
         """The shipped draws of a variant, or those of another file, which has its own variant.
 
-        Raises `RecordError` for a file that is no such table, was made from other evidence or priors, or lacks a
-        constant; warns of draws of a sampler that did not converge.
+        Raises `RecordError` for a file that does not fit; warns of draws of a sampler that did not converge.
         """
         file = shipped_file(check_variable(variable)) if path is None else Path(path)
         draws = _read(file, file.stat().st_mtime_ns if file.exists() else 0)
@@ -119,15 +110,14 @@ class PosteriorDraws:
         """The observer of one draw."""
         return Observer.from_values(self.draw(k), self.variable)
 
-    def nominal(self) -> Observer:
-        """The observer of the first draw, which is nearest to the medians. The shipped observer is the maximum."""
-        return self.observer(0)
+    def spaced(self, count: int) -> list[int]:
+        """Numbers of so many evenly spaced draws."""
+        return [round(k) for k in np.linspace(0, len(self) - 1, count).tolist()]
 
     def new_laboratory(self, seed: int = 0) -> Array:
         """How much more sensitive (ln) the people of a new laboratory are, (n, 2) for cold and warm in every draw.
 
-        A threshold there is e^(−offset) times the observer's. The spread between laboratories is the draw's own; the
-        same seed gives the same laboratory in standard units.
+        The spread is the draw's own; the same seed gives the same laboratory in standard units.
         """
         standard = np.random.default_rng(seed).standard_normal((len(self), len(CHANNELS)))
         return np.asarray(self.values(BETWEEN_LABORATORIES)[:, None] * standard)
@@ -139,5 +129,4 @@ class PosteriorDraws:
 
 @lru_cache(maxsize=8)
 def _read(file: Path, _changed_ns: int) -> PosteriorDraws:
-    header, (names, draws), (memory_names, memory) = read_draws(file)
-    return PosteriorDraws(header, names, draws, memory_names, memory)
+    return PosteriorDraws(*read_draws(file))

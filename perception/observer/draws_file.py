@@ -43,9 +43,8 @@ APPROXIMATE = "normal approximation"
 class DrawsHeader:
     """What a table of draws was made from: digests, variant, sampler and diagnostics, all as text in the file.
 
-    `inputs`, `evidence` and `priors` are digests; `left_out` names experiments that were not conditioned on;
-    `r_hat` is the largest and `ess` the least bulk effective sample size over all constants. Draws of one laboratory
-    say how they were `resampled`, and on which `rig` its answers or measurements were made; others leave both empty.
+    `r_hat` is the largest and `ess` the least over all constants. Draws of one laboratory say how they were
+    `resampled`, and on which `rig` it played; others leave both empty.
     """
 
     inputs: str
@@ -150,12 +149,8 @@ def _to_text(value: object) -> str:
     return f"{value:.5g}" if isinstance(value, float) else str(value)
 
 
-Columns = tuple[tuple[str, ...], Array]
-"""Names, and what stands below them (n, names)."""
-
-
-def read_draws(path: Path) -> tuple[DrawsHeader, Columns, Columns]:
-    """Header, draws of the constants and of memory of a file; a RecordError says what is wrong, where, and the cure."""
+def read_draws(path: Path) -> tuple[DrawsHeader, tuple[str, ...], Array, tuple[str, ...], Array]:
+    """Header, names and draws, of constants and of memory; a RecordError says what is wrong, where, and the cure."""
     lines = read_text(path, "table of posterior draws", MOST_MB, RecordError).splitlines()
     head = [line for line in lines if line.startswith("#")]
     if not head or not head[0].startswith((FIRST_LINE, LABORATORY_LINE)):
@@ -173,7 +168,7 @@ def read_draws(path: Path) -> tuple[DrawsHeader, Columns, Columns]:
     remembered = [name in MEMORY_NAMES for name in names]
     constants = tuple(name for name in names if name not in MEMORY_NAMES)
     memory = tuple(name for name in names if name in MEMORY_NAMES)
-    return header, (constants, draws[:, np.logical_not(remembered)]), (memory, draws[:, remembered])
+    return header, constants, draws[:, np.logical_not(remembered)], memory, draws[:, remembered]
 
 
 def _numbers(file: str, names: Sequence[str], rows: Sequence[Sequence[str]], first_line: int) -> Array:

@@ -1,7 +1,6 @@
 """The observer: all constants of a person, a mechanism each, read from the calibrated parameter file or a draw.
 
-The file `data/observer.toml` is written by `thermicon.perception.evidence observer`; each number there
-says what it was calibrated on, or that it is assumed, and carries its interval.
+Each number of `data/observer.toml` says what it was calibrated on, or that it is assumed, and carries its interval.
 """
 
 from __future__ import annotations
@@ -15,16 +14,7 @@ from typing import Any
 
 from thermicon.circuit.records import RecordError, Table, load_records
 
-from .channels import (
-    CHANNELS,
-    NORMS,
-    VARIABLES,
-    Channel,
-    Norm,
-    Variable,
-    check_variable,
-    source_of,
-)
+from .channels import CHANNELS, NORMS, VARIABLES, Channel, Norm, Variable, check_variable, source_of
 from .constants import fields_from, objection_to, values_in, values_of
 from .mechanisms.adaptation import Adaptation
 from .mechanisms.age import Age
@@ -170,10 +160,7 @@ def observer_records() -> Table:
 
 
 def read_records(path: Path) -> Table:
-    """Records of an observer's file; a RecordError where a quantity has another unit than the shipped one.
-
-    Values are not converted.
-    """
+    """Records of an observer's file; a RecordError where a quantity has another unit than the shipped one."""
     table = load_records(path)
     shipped = {record.quantity: record.unit for record in observer_records()}
     for record in table:

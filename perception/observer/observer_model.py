@@ -1,8 +1,7 @@
 """What predictions are made with: the nominal observer, how people differ, and the posterior that both come from.
 
-The shipped one is the default. A laboratory's own, or that of a group of patients, is another file of either form: a
-table of posterior draws (.csv), or the records of one observer (.toml), which has no draws and so no intervals for a
-new laboratory.
+Another than the shipped one is a table of posterior draws (.csv), or the records of one observer (.toml), which has no
+draws and so no intervals for a new laboratory.
 """
 
 from __future__ import annotations
@@ -11,8 +10,6 @@ import hashlib
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal, Self, TypedDict, Unpack
-
-import numpy as np
 
 from thermicon.circuit.inputs import InputError
 from thermicon.circuit.records import RecordError, Table
@@ -55,8 +52,7 @@ class ObserverModel:
     def load(cls, path: Path | str | None = None) -> Self:
         """The shipped model, or that of a file: draws kept by ``thermicon pilot`` (.csv), or one observer's records.
 
-        Raises `RecordError` for a file that cannot be read, is incomplete, or was made from other evidence or by
-        another version.
+        Raises `RecordError` for a file that cannot be read, is incomplete, or was made from other evidence.
         """
         if path is None:
             digest = hashlib.sha256((DATA / "observer.toml").read_bytes()).hexdigest()
@@ -67,7 +63,7 @@ class ObserverModel:
                 draws = PosteriorDraws.load(file)
                 if draws.variable != VARIABLES[0]:
                     raise RecordError(f"{file.name}: draws of {draws.variable}, not of {VARIABLES[0]}, the default")
-                records, nominal = draws.table(0), draws.nominal()
+                records, nominal = draws.table(0), draws.observer(0)
             else:
                 records = read_records(file)
                 nominal = Observer.from_table(records)
@@ -80,10 +76,7 @@ class ObserverModel:
         return 0 if self.posterior is None else min(wanted, len(self.posterior))
 
     def draw_count(self, asked: int | None, usual: int) -> int:
-        """How many draws an interval is made of: those asked for, or the usual number, or as many as there are.
-
-        None are made where there are none. A ValueError for one draw, and for more than there are.
-        """
+        """How many draws an interval is made of: those asked for, the usual number, or as many as there are."""
         if asked is not None and (asked < 0 or asked == 1):
             raise ValueError(f"an interval needs at least two draws of the parameters, or 0 for none, not {asked}")
         if self.posterior is None or asked is None:
@@ -94,9 +87,15 @@ class ObserverModel:
 
     def some_draws(self, count: int) -> list[Observer]:
         """Observers of so many evenly spaced draws; none where there are no draws."""
-        if (held := self.posterior) is None:
-            return []
-        return [held.observer(k) for k in np.linspace(0, len(held) - 1, count).round().astype(np.int64).tolist()]
+        held = self.posterior
+        return [] if held is None else [held.observer(k) for k in held.spaced(count)]
+
+    @property
+    def drawn(self) -> PosteriorDraws:
+        """The posterior draws; a ValueError for an observer without them."""
+        if self.posterior is None:
+            raise ValueError(f"{self.name} has no posterior draws, from which an interval for a new laboratory is made")
+        return self.posterior
 
     def people(self, n: int, seed: int = 0) -> People:
         """Virtual people who differ as this model says; person i is the same whatever n is."""

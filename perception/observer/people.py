@@ -16,7 +16,7 @@ from thermicon.circuit.records import Record
 from thermicon.circuit.rig.skin import layer_spreads
 from thermicon.icons.model.arguments import checked
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 from .channels import CHANNELS, Channel
 from .constants import Both, record_of
 from .mechanisms.skin import depth_keys
@@ -30,10 +30,9 @@ STANDARD = NormalDist()
 
 @dataclass(frozen=True, slots=True)
 class People:
-    """Persons as columns of shape (n,); multipliers are relative to the nominal observer or rig.
+    """Persons as columns of shape (n,): decision time in s, lapse 0–1, and multipliers.
 
-    Multipliers of thresholds and of criteria (median 1), of memory noise, of contact resistance, of the thickness of
-    the outermost layer and of the path to the cord; decision time in s, lapse 0–1.
+    Of thresholds and criteria (median 1), memory noise, contact resistance, outermost layer and path to the cord.
     """
 
     threshold_cold: Array
@@ -48,12 +47,11 @@ class People:
     lapse: Array
 
     def __post_init__(self) -> None:
+        own_arrays(self, *(field.name for field in fields(self)))
         for field in fields(self):
-            own = np.array(getattr(self, field.name), dtype=np.float64)
+            own = getattr(self, field.name)
             if own.ndim != 1 or own.shape != self.threshold_cold.shape or not np.isfinite(own).all():
                 raise ValueError(f"people: {field.name} must be one finite number for each person")
-            own.setflags(write=False)
-            object.__setattr__(self, field.name, own)
 
     def __len__(self) -> int:
         return int(self.threshold_cold.size)
@@ -82,10 +80,7 @@ class People:
         return rig.skin.corneum_m * self.outer_layer
 
     def rigs(self, rig: Rig, depths_m: Sequence[Both[float] | None] | None = None) -> list[Rig]:
-        """The rig as each person meets it: own contact resistance, outermost layer, and depths of the receptors.
-
-        Without depths (m) receptors are where the rig has them.
-        """
+        """The rig as each person meets it: own contact, outermost layer, and depths (m) of receptors, if given."""
         columns = (self.contact_resistance.tolist(), self.outer_layer.tolist(), depths_m or [None] * len(self))
         return [_as_met(rig, *each) for each in zip(*columns, strict=True)]
 

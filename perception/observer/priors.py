@@ -1,7 +1,6 @@
 """Parameters of the observer: what each one is, its prior distribution, and where the prior comes from.
 
-Every parameter is inferred on a scale where its prior is normal: the logarithm for positive numbers, the
-logit for shares. `to_value` goes from there to the parameter's own unit.
+Every parameter is inferred on a scale where its prior is normal: `to_value` goes from there to its own unit.
 """
 
 from __future__ import annotations
@@ -107,10 +106,7 @@ class Priors:
 
 LABORATORIES = ("E1", "E3", "E4", "thenar", "wrist")
 """Laboratories with an offset of their own in each channel; E2 is E1's, E5 is E4's, and ratings have their own unit."""
-DRIVE_SCALE: dict[Variable, float] = {
-    "temperature": 1.0,
-    "heat flow": 600.0,
-}
+DRIVE_SCALE: dict[Variable, float] = {"temperature": 1.0, "heat flow": 600.0}
 """What the prior of a threshold drive is multiplied by: W/m² for each K, roughly; the prior is wide."""
 FILE = Path(__file__).parents[1] / "data" / "priors.toml"
 

@@ -4,9 +4,6 @@
 2. With at least `LEAST_EFFECTIVE` draws behind the data, laboratories are resampled by these weights.
 3. Otherwise fresh laboratories are sampled from the prior times a likelihood that is a polynomial of the coordinates,
    fitted to those simulated so far, and simulated. Those of measurements are weighed by what the polynomial missed.
-
-Either way the result is a sample of laboratories with people who did not take part. Answers and measurements differ in
-what is simulated of them and in how likely they are there, and in nothing else.
 """
 
 from collections.abc import Callable
@@ -21,13 +18,7 @@ from thermicon.circuit.cores import quiet_blas
 
 from ..arrays import Array
 from ..experiments.measure import Setting
-from .likelihood import (
-    PooledLikelihood,
-    effective,
-    log_likelihoods,
-    normalised_weights,
-    walk,
-)
+from .likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights, walk
 from .measurement_likelihood import Emulated, Predicted, log_likelihood, predicted
 from .measurements_file import Measurements
 from .playing import Confusions, Stage
@@ -49,12 +40,10 @@ Data: TypeAlias = "Answered | Measured"
 
 @dataclass(frozen=True, slots=True)
 class Conditioned:
-    """What data make of the laboratories.
+    """What data make of the laboratories `before`, which were weighed; `after` is a sample of equal weights.
 
-    `before` are the laboratories that were weighed, with what was `simulated` in them; `after` is a sample of equal
-    weights, with `simulated_after`. `effective` is the effective sample size of the weights of `before`,
-    `effective_after` how many independent draws stand behind `after`, `rounds` how often fresh laboratories were
-    simulated (0: the weights sufficed).
+    `effective` is the effective sample size of the weights, `effective_after` how many independent draws stand behind
+    `after`, `rounds` how often fresh laboratories were simulated (0: the weights sufficed).
     """
 
     before: Laboratories
@@ -85,13 +74,7 @@ def condition(
 
 
 def _refreshed(
-    data: Data,
-    place: Array,
-    simulated: Any,
-    logs: Array,
-    kept: int,
-    rng: np.random.Generator,
-    step: Step | None,
+    data: Data, place: Array, simulated: Any, logs: Array, kept: int, rng: np.random.Generator, step: Step | None
 ) -> tuple[Laboratories, Any, float, int]:
     """Fresh laboratories, what is simulated there, how many are effective, and the rounds that it took."""
     start, short = place, np.zeros(len(place)) if data.by_people else logs.max() - logs
@@ -123,13 +106,7 @@ def _refreshed(
 
 
 def _resampled(
-    data: Data,
-    place: Array,
-    simulated: Any,
-    weights: Array,
-    kept: int,
-    rng: np.random.Generator,
-    step: Step | None,
+    data: Data, place: Array, simulated: Any, weights: Array, kept: int, rng: np.random.Generator, step: Step | None
 ) -> tuple[Laboratories, Any]:
     """A sample of equal weights, with people who did not take part, and what is simulated there."""
     chosen = systematic(weights, kept, rng)
@@ -157,9 +134,8 @@ def systematic(weights: Array, n: int, rng: np.random.Generator) -> NDArray[np.i
 class Answered:
     """Answers to a set, which the people of every laboratory are asked to name as well.
 
-    `by_people` says that data depend on who the people of a laboratory are: people who are kept must then be others,
-    and the likelihood of fresh laboratories is too much a matter of chance to weigh them. `rounds` of fresh
-    laboratories are simulated at most; `stream` keeps their chance apart from that of other data.
+    `by_people`: they depend on who the people are. Those who are kept must then be others, and the likelihood of
+    fresh laboratories is too much a matter of chance to weigh them. `stream` keeps chance apart from other data's.
     """
 
     trials: Trials

@@ -1,13 +1,8 @@
 """A conditioned laboratory as files: a table of draws like the shipped one, and the observer in the middle of them.
 
-`LAB.csv` has the form of `posterior.csv`, with further columns for the constants of memory, and is read by
-`PosteriorDraws.load` and `Observer.load`. Draws are resampled by their weights. The offset of the laboratory is part of
-its thresholds there, so that the spread between laboratories is next to nothing: the draws are those of this one.
-`LAB.toml` is the first of these draws as a whole parameter file for `Observer.load`, with 95 % intervals of all.
-
-The first draw is a laboratory of the sample and not the medians of its constants, which belong to no laboratory and may
-predict something else. The simulated score of a laboratory scatters by some 2 points of per cent correct with who its
-people are, so that the few nearest ones are asked again with other people.
+`LAB.csv` has the form of `posterior.csv`, with further columns for memory; the offset of the laboratory is part of its
+thresholds. `LAB.toml` is its first draw, which is a laboratory of the sample: the medians belong to none, and may
+predict something else. A score scatters by some 2 points with who the people are: the nearest few are asked again.
 """
 
 from collections.abc import Mapping, Sequence
@@ -35,18 +30,12 @@ OF_SOURCE = "R-hat, converged and likelihoods: those of the draws that were resa
 
 
 def laboratory_draws(
-    prior: LaboratoryPrior,
-    found: Conditioned,
-    predicted: Array,
-    played: Stage,
-    provenance: Sequence[str],
-    rig: str,
+    prior: LaboratoryPrior, found: Conditioned, predicted: Array, played: Stage, provenance: Sequence[str], rig: str
 ) -> PosteriorDraws:
     """Draws of one laboratory, its offset in the thresholds, its memory beside the constants; to the figures of a file.
 
-    The first is the one in the middle, by its constants and by what each `predicted` (laboratories, numbers) of a set
-    that was `played` and of what was measured; a single constant of it may lie off its own median. Of the provenance,
-    the lines on the data are noted.
+    The first is in the middle by its constants and by what is `predicted` (laboratories, numbers) of the set that was
+    `played` and of what was measured. Of the provenance, the lines on the data are noted.
     """
     some, values = found.after, prior.values(found.after)
     names, own = prior.draws.names, values[:, : len(prior.draws.names)].copy()
@@ -81,10 +70,7 @@ def how_resampled(laboratories: int, effective: float, rounds: int) -> str:
 
 
 def laboratory_texts(draws: PosteriorDraws, version: str, provenance: Sequence[str]) -> tuple[str, str]:
-    """Texts of the parameter file (TOML) and of the table of draws (CSV) of one laboratory.
-
-    The first has constants and memory of the first draw, with 95 % intervals of all; both name the provenance.
-    """
+    """Texts of the parameter file (TOML; the first draw, 95 % intervals of all) and of the table of draws (CSV)."""
     columns, values = (*draws.names, *draws.memory_names), np.hstack([draws.draws, draws.memory])
     each = dict(zip(columns, values.T, strict=True))
     records = tuple(_narrowed(record, each, draws.memory_names) for record in draws.table(0))
@@ -111,10 +97,9 @@ NEAREST, AGAIN = 6, 8
 
 
 def middle_of(some: Laboratories, constants: Array, predicted: Array, played: Stage) -> int:
-    """Number of the laboratory in the middle.
+    """Number of the laboratory whose constants are near their medians, and what it predicts near the means.
 
-    `constants` (laboratories, constants) must be near their medians, and what each predicts, `predicted` (laboratories,
-    numbers), near its means; the first column is the proportion correct. The nearest are asked the set once more.
+    The first column of `predicted` is the proportion correct; for it the nearest are asked the set once more.
     """
     _, first, group, times = np.unique(some.place, axis=0, return_index=True, return_inverse=True, return_counts=True)
     # Resampled more than once, a laboratory has been asked with several groups of people.

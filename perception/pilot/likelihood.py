@@ -35,10 +35,7 @@ AT_ONCE = 4_000_000
 
 
 def log_likelihoods(probability: Small, counts: Array) -> Array:
-    """Ln L_j of every laboratory and participant (laboratories, participants).
-
-    `probability` (laboratories, people, icons, icons), `counts` (participants, icons, icons).
-    """
+    """Ln L_j (laboratories, participants) of (laboratories, people, icons, icons) and (participants, icons, icons)."""
     laboratories, people = probability.shape[:2]
     used = np.flatnonzero(counts.sum(axis=0).ravel())
     answers = counts.reshape(len(counts), -1)[:, used].T
@@ -78,10 +75,7 @@ ACCEPTED = 0.3
 
 @dataclass(frozen=True, slots=True)
 class PooledLikelihood:
-    """Ln likelihood of pooled answers at coordinates; `coefficients` (features, directions), `variance` (directions,).
-
-    `observed` (directions,) are the answers in the directions, in SDs of V; `pairs` the products among the features.
-    """
+    """Ln likelihood of pooled answers, `observed` (directions,); `coefficients` (features, directions) predict them."""
 
     observed: Array
     coefficients: Array
@@ -90,10 +84,7 @@ class PooledLikelihood:
 
     @classmethod
     def fit(cls, place: Array, played: Confusions, counts: Array, weight: Array | None = None) -> PooledLikelihood:
-        """Fit to simulated laboratories at coordinates (n, d), for answers (participants, icons, icons).
-
-        `weight` (n,) says how much each laboratory counts (None: all alike).
-        """
+        """Fit to laboratories at coordinates (n, d) with a `weight` (n,), for answers (participants, icons, icons)."""
         own = np.ones(len(place)) if weight is None else weight / weight.mean()
         shown = counts.sum(axis=2)
         mean, noise = _moments(played, shown, own)
@@ -120,8 +111,7 @@ class PooledLikelihood:
 def walk(start: Array, target: Callable[[Array], Array], rng: np.random.Generator) -> Array:
     """Sample coordinates (n, d) from a standard normal times the likelihood, by n Markov chains from `start`.
 
-    Proposals √(1 − s²)·x + s·noise leave the normal as it is (preconditioned Crank–Nicolson), so that the likelihood
-    alone decides on them; its power rises to 1 in the first half, in which s is set too.
+    Preconditioned Crank–Nicolson; the power of the likelihood rises to 1 in the first half, in which the step is set.
     """
     place, value, step = start.copy(), target(start), STEP
     for k in range(STEPS):

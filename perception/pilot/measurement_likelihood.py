@@ -37,10 +37,9 @@ NUGGET = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """Participants with values under the same `conditions` (numbers), with the same errors.
+    """Participants with values under the same `conditions` (numbers), with the same errors; of their logs.
 
-    `mean` (conditions,) and `scatter` (conditions, conditions) of their log values; `stated` (conditions,) are errors
-    of logs as given (NaN: by `trials`, and where these are NaN too, as assumed).
+    `stated` (conditions,) are errors as given (NaN: by `trials`, and where these are NaN too, as assumed).
     """
 
     conditions: NDArray[np.int64]
@@ -161,10 +160,8 @@ def _predicted(flat: Array, count: int) -> Predicted:
 
 @dataclass(frozen=True, slots=True)
 class Predicted:
-    """Predictions of conditions in laboratories: logs of people's values.
-
-    `mean` (laboratories, conditions) over people, `between` (laboratories, conditions, conditions) their covariance,
-    `within` (laboratories, conditions) the SD of the log of one trial.
+    """Logs of people's values in laboratories: `mean` (laboratories, conditions), `between`, the covariance of people
+    (laboratories, conditions, conditions), and `within` (laboratories, conditions), the SD of one trial.
     """
 
     mean: Array

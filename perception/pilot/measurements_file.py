@@ -19,9 +19,8 @@ from thermicon.icons.files.table import as_number
 from thermicon.icons.model.arguments import checked
 from thermicon.icons.near_words import nearest_words
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 from ..experiments.measure import ADAPTIVE, METHODS, UNITS, Condition, Kind
-from ..kernels.parallel import own_arrays
 from ..observer.channels import CHANNELS, Channel
 from .trials_file import TrialsError, check_labels, label, require, table_in
 
@@ -62,11 +61,9 @@ LONGEST_RAMP_S = 120.0
 
 @dataclass(frozen=True, slots=True)
 class Measurements:
-    """Values of some participants under some conditions.
+    """Values of some participants under some conditions, each (participants, conditions), in the conditions' units.
 
-    `values` (participants, conditions) are means or medians in the unit of the condition, NaN where nothing was
-    measured; `errors` their standard errors and `trials` the number behind each, NaN where not known. `source` and
-    `digest` are the name of the file and the first 16 digits of its SHA-256.
+    NaN where nothing was measured, or `errors` and `trials` are not known; the digest is of the file's SHA-256.
     """
 
     conditions: tuple[Condition, ...]

@@ -1,8 +1,7 @@
 """Plan an experiment: how many participants and trials it needs, by simulating all of it.
 
-Every simulated experiment takes place in another laboratory that the evidence allows. Participants are drawn from its
-people, each names every set, and the mean over participants is reported with Student's 95 % interval; two sets are
-compared within participants by the paired t test.
+Each takes place in another laboratory that the evidence allows. The mean over its participants is reported with
+Student's 95 % interval; two sets are compared within participants by the paired t test.
 """
 
 from __future__ import annotations
@@ -44,9 +43,8 @@ FEWEST = 2
 class Design:
     """An experiment of so many participants and trials (each, of each set), and what it is expected to give.
 
-    `width` is the mean width of the 95 % interval of the proportion correct; with two sets `found` is the share of
-    experiments that distinguish them in the right direction, `wrong` in the wrong one, and `width` is that of the
-    difference.
+    `width` is that of the 95 % interval of the proportion correct, or of the difference of two sets, which a share
+    `found` of experiments distinguishes in the right direction, and `wrong` in the other.
     """
 
     participants: int

@@ -101,10 +101,7 @@ class Stage:
 
 
 def stage(icons: IconSet, rig: Rig, prior: LaboratoryPrior, *, seed: int = 0, tracking: str | None = None) -> Stage:
-    """Play a set to as many people as the intervals need, each on skin and contact of their own.
-
-    Raises ValueError for fewer than two icons and for more than 64.
-    """
+    """Play a set of 2 to 64 icons to as many people as intervals need, each on skin and contact of their own."""
     from thermicon.circuit.solver.simulate import duration_s
 
     members = list(icons)

@@ -1,11 +1,9 @@
 """What samples of laboratories say: scores of sets and constants before and after data, and how the data fit.
 
-Which constants the data moved or narrowed is measured by how far their distribution went from what it was. For the fit,
-experiments are simulated with as many participants and the same presentations or conditions as were observed, each in
-another laboratory. The posterior predictive p is the share of them that lie as far from the prediction as the observed
-one; as such tests go, it is conservative where the same data have conditioned the prediction. Of answers, the statistic
-is X² = Σ (O − E)²/E over all cells of the pooled matrix, E from the mean prediction; of measurements, the sum over
-conditions of the squared deviation of the log group mean, in SDs of the simulated ones.
+For the fit, experiments like the observed one are simulated, each in another laboratory. The posterior predictive p is
+the share of them that lie as far from the prediction; it is conservative where the same data have conditioned it. Of
+answers, the statistic is X² = Σ (O − E)²/E over all cells of the pooled matrix, E from the mean prediction; of
+measurements, the sum of the squared deviations of log group means, in SDs of the simulated ones.
 """
 
 from __future__ import annotations
@@ -50,13 +48,10 @@ class SetPrediction:
 
     def row(self, data: str) -> dict[str, str | float]:
         """A row of a table, for `data` of before or after."""
-        scores = zip(
-            ("proportion_correct", "information_bits"), (self.proportion_correct, self.information_bits), strict=True
-        )
-        ends = {
-            f"{name}{end}": one for name, score in scores for end, one in zip(("", "_low", "_high"), score, strict=True)
-        }
-        return {"set": self.title, "data": data, **ends}
+        row: dict[str, str | float] = {"set": self.title, "data": data}
+        for name in ("proportion_correct", "information_bits"):
+            row |= zip((name, f"{name}_low", f"{name}_high"), getattr(self, name), strict=True)
+        return row
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,8 +85,7 @@ def median_three(values: Array) -> Three:
 class ChangedConstant:
     """One constant before and after: median and 95 %. `shift_sd` is in SDs of before, `sd_left` the SD left over it.
 
-    `bits` is the information gained, the divergence of two normals with these means and SDs (on a log scale for
-    positive constants).
+    `bits` gained are the divergence of two normals with these means and SDs (of logs for positive constants).
     """
 
     constant: str
@@ -106,10 +100,7 @@ class ChangedConstant:
 def changed(
     names: Sequence[str], before: Array, after: Array, effective: float, units: Sequence[str]
 ) -> tuple[ChangedConstant, ...]:
-    """Constants that changed by more than chance, the most changed first; columns of both arrays belong to `names`.
-
-    `effective` is how many independent draws stand behind `after`.
-    """
+    """Constants that changed by more than chance, most first; `effective` independent draws stand behind `after`."""
     found = [_change(*each) for each in zip(names, units, before.T, after.T, strict=True)]
     least = CHANCE * (1.0 / effective + 1.0 / len(before))
     return tuple(sorted((each for each in found if each.bits >= least), key=lambda each: -each.bits))
@@ -128,10 +119,7 @@ def _change(name: str, unit: str, before: Array, after: Array) -> ChangedConstan
 
 @dataclass(frozen=True, slots=True)
 class PairFit:
-    """How often two icons were taken for each other, as a share of their `trials`: observed, and 95 % as predicted.
-
-    `missed` says that the observed share lies outside the interval.
-    """
+    """How often two icons were taken for each other, as a share of their `trials`; `missed`: outside the interval."""
 
     a: str
     b: str
@@ -146,8 +134,7 @@ class PairFit:
 class Fit:
     """What the same experiment would have given: `p` of the test of fit, scores as reported, and every pair.
 
-    `proportion_correct` and `information_bits_plugin` are median and 95 % of the simulated experiments; `p_people` is
-    the share of experiments whose participants differ as much as the observed ones (None for fewer than three).
+    `p_people` is the share whose participants differ as much as the observed ones (None for fewer than three).
     """
 
     p: float
@@ -165,10 +152,7 @@ class Fit:
 
 @dataclass(frozen=True, slots=True)
 class ConditionFit:
-    """One condition: geometric mean of so many participants, and the predicted one, median and 95 %.
-
-    `missed` says that the measured mean lies outside the interval.
-    """
+    """One condition: geometric mean of so many participants, the predicted one, and whether its 95 % were `missed`."""
 
     condition: Condition
     unit: str
@@ -187,10 +171,7 @@ class MeasurementFit:
 
 
 def simulated_counts(played: Confusions, presented: Array, rng: np.random.Generator) -> Array:
-    """Answers (experiments, participants, icons, icons) to given presentations (participants, icons).
-
-    Each experiment is in another laboratory, with participants drawn from its people.
-    """
+    """Answers (experiments, participants, icons, icons) to presentations, each time in another laboratory."""
     laboratories, people, icons = played.probability.shape[:3]
     found = np.zeros((EXPERIMENTS, len(presented), icons, icons))
     shown = presented.astype(np.int64)

@@ -1,7 +1,6 @@
 """A sealed prediction, the JSON of `rank`, opened: its log score on answers, beside guessing, skin alone and its best.
 
-The score is the mean log probability, in bits, that a prediction gave to the answers; the best that its own matrix
-allows is the score that it expects of itself if it is the truth.
+The best that its own matrix allows is the score that it expects of itself if it is the truth.
 """
 
 from __future__ import annotations
@@ -50,10 +49,7 @@ class Sealed:
 
 @dataclass(frozen=True, slots=True)
 class Opened:
-    """Bits a trial and share said to be correct of prediction, guessing, skin temperature, and best, in this order.
-
-    `chance_bits` is the SD of the prediction's bits over experiments of as many independent trials, were it the truth.
-    """
+    """Bits a trial and share correct of each score; `chance_bits` is the SD of the prediction's, were it the truth."""
 
     sealed: Sealed
     trials: int

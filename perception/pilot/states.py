@@ -1,9 +1,7 @@
 """Laboratories that the evidence allows: constants, memory, an offset of the laboratory, and the people in it.
 
-A laboratory is one draw θ of the posterior, memory m drawn from its intervals (or the draw's own, where it has one), an
-offset δ of its sensitivity, and a seed of its people. All but the seed are kept in coordinates in which the prior is
-standard normal, so that they can be moved without leaving it: constants on the scales of their priors, with the mean
-and covariance of the draws.
+All but the seed of the people are kept in coordinates in which the prior is standard normal, so that they can be moved
+without leaving it: constants on the scales of their priors, with the mean and covariance of the draws.
 """
 
 from __future__ import annotations
@@ -38,17 +36,10 @@ SEEDS = 2**31
 
 @dataclass(frozen=True, slots=True)
 class Laboratories:
-    """Some laboratories: `place` (n, coordinates) in which the prior is standard normal, `seed` (n,) of their people.
-
-    Columns of `place` are constants first, then memory, then the offsets of cold and warm.
-    """
+    """Some laboratories: `seed` (n,) of their people, and `place` (n, coordinates): constants, memory, offsets."""
 
     place: Array
     seed: NDArray[np.int64]
-
-    def __post_init__(self) -> None:
-        if self.place.ndim != 2 or self.seed.shape != (len(self.place),):
-            raise ValueError("laboratories need one row of coordinates and one seed each")
 
     def __len__(self) -> int:
         return len(self.place)
@@ -61,8 +52,7 @@ class Laboratories:
 class LaboratoryPrior:
     """What laboratories are drawn from: draws of the posterior, intervals of memory, and the spread of offsets.
 
-    `records` are those of an observer, from which the intervals of memory are read (None: the shipped ones). Memory
-    that the draws have themselves is kept with their constants, on the scale of its shipped interval.
+    Memory that the draws have themselves is kept with their constants, on the scale of its shipped interval.
     """
 
     def __init__(self, draws: PosteriorDraws, norm: Norm, records: Table | None = None) -> None:
@@ -109,7 +99,7 @@ class LaboratoryPrior:
     def first(self, n: int, seed: int) -> Laboratories:
         """The draws themselves, evenly spaced (over and over where n is larger), each with a laboratory around it."""
         total = len(self.draws)
-        chosen = np.arange(n) % total if n > total else np.linspace(0, total - 1, n).round().astype(np.int64)
+        chosen = [k % total for k in range(n)] if n > total else self.draws.spaced(n)
         rng = np.random.default_rng(np.random.SeedSequence([seed, 11]))
         normal = _normal(latin(self._free, n, seed))
         offsets = rng.standard_normal((n, len(CHANNELS)))

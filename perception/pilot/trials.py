@@ -1,11 +1,8 @@
 """Answers of an experiment in which icons were named, and their scores: per cent correct and bits.
 
-Bits are the plug-in estimate, which is biased upwards by about (cells − rows − columns + 1)/(2·trials·ln 2) with
-counts of what was used (Miller 1955); less that, they are called Miller–Madow here. Answers that are possible but did
-not occur are not counted, so that with a few trials an icon some bias is left.
-
-A few participants may happen to be alike, or right throughout: the interval of all answers is therefore never narrower
-than Wilson's, which their number alone leaves.
+Bits are the plug-in estimate, biased upwards by about (cells − rows − columns + 1)/(2·trials·ln 2) with counts of what
+was used (Miller 1955), and less that bias. Answers that are possible but did not occur are not counted. A few
+participants may happen to be alike, or right throughout: no interval is narrower than Wilson's.
 """
 
 import math
@@ -13,8 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..arrays import Array
-from ..kernels.parallel import own_arrays
+from ..arrays import Array, own_arrays
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,8 +97,7 @@ FEWEST = 2
 class AnswerScore:
     """Per cent correct, with a 95 % interval, and bits of some answers; trials without one are not correct.
 
-    `information_bits_plugin` are bits as published information is computed, `information_bits` those without their bias
-    `information_bits_bias`, within what a set of this size can carry.
+    `information_bits_plugin` less its `information_bits_bias` are `information_bits`, within what a set can carry.
     """
 
     who: str
@@ -137,8 +132,7 @@ def plugin_information(counts: Array) -> tuple[float, float]:
 def score(who: str, counts: Array, unanswered: float | Array = 0.0) -> AnswerScore:
     """Scores of the answers (participants, icons, icons) of one participant or of several together.
 
-    Trials `unanswered` (participants,) count as not correct, and are left out of the bits. The interval is Wilson's, or
-    over participants Student's by the jackknife where that is wider.
+    `unanswered` trials are not correct, and have no bits. The interval is Wilson's, or the jackknife's where wider.
     """
     pooled = counts.sum(axis=0)
     trials = counts.sum(axis=(1, 2)) + unanswered

@@ -1,8 +1,4 @@
-"""Heat maps of a set: distances and answers, with similar icons adjacent.
-
-One light map of one hue, so that a page stays printable and a grey copy keeps the order of the shades. Every cell says
-its number as long as it is large enough to hold one; then a colour bar says what the shades mean.
-"""
+"""Heat maps of a set: distances and answers, similar icons adjacent, in one hue, so that grey keeps their order."""
 
 from __future__ import annotations
 
@@ -31,10 +27,7 @@ LONGEST_LABEL = 44
 
 
 def plot_confusion(ranking: Ranking, ax: Axes | None = None) -> Axes:
-    """Draw the predicted answers in per cent: rows are the icon presented, columns the name answered.
-
-    The diagonal is correct. Icons that are often confused are adjacent.
-    """
+    """Draw the predicted answers in per cent, those that are often confused adjacent: icon presented, name answered."""
     order = clustered_order(ranking.d_prime)
     names = [ranking.marked[k] for k in order]
     axes = heat(names, names, 100.0 * ranking.confusion[np.ix_(order, order)], ax, top=100.0, bend=0.5)
@@ -57,10 +50,7 @@ def plot_distance(ranking: Ranking, ax: Axes | None = None) -> Axes:
 
 
 def clustered_order(distances: Array) -> NDArray[np.intp]:
-    """Order of icons in which near ones are side by side: average linkage, its leaves ordered at best.
-
-    The first icon of the file is in the first half, so that the order does not flip at a touch.
-    """
+    """Order of icons in which near ones are side by side, the first of the file in the first half: average linkage."""
     icons = len(distances)
     if icons < 3:
         return np.arange(icons)
@@ -80,10 +70,7 @@ def heat(
     top: float | None = None,
     bend: float = 1.0,
 ) -> Axes:
-    """One heat map of values of 0 and more, shape (rows, columns); `top` is the value of the darkest shade.
-
-    `bend` below 1 gives small values more of the shades.
-    """
+    """One heat map of values of 0 and more; `top` is the darkest, `bend` below 1 gives small values more shades."""
     from matplotlib.colors import PowerNorm
 
     room = 0.075 * max(map(len, map(short, rows)))

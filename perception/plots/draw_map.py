@@ -30,10 +30,7 @@ NEAR = 8.0
 
 
 def plot_map(found: PerceptualMap, ax: Axes | None = None) -> Axes:
-    """Icons where they lie in d′, dots with names, an ellipse for half of the people, the stress in the title.
-
-    A name that found no room beside its dot has a thin line to it.
-    """
+    """Icons where they lie in d′, dots with names, an ellipse for half of the people, the stress in the title."""
     axes = new_axes(ax, SMALL if len(found.labels) <= FEW else LARGE)
     if found.covariance is not None:
         for point, covariance in zip(found.points, found.covariance, strict=True):
@@ -66,10 +63,7 @@ def _ellipse(axes: Axes, point: Array, covariance: Array) -> None:
 
 
 def _frame(axes: Axes, found: PerceptualMap) -> None:
-    """Equal scales, and limits that hold dots and ellipses with a margin, at least 1 d′ about the centre.
-
-    They have the shape of the axes in the finished layout, so that equal scales leave no empty stripes.
-    """
+    """Equal scales that hold dots and ellipses, at least 1 d′, in the shape of the axes, so that nothing is empty."""
     half = np.zeros_like(found.points)
     if found.covariance is not None:
         half = np.sqrt(-2.0 * np.log(1.0 - SHARE) * np.diagonal(found.covariance, axis1=1, axis2=2))
@@ -128,8 +122,7 @@ def _names(axes: Axes, found: PerceptualMap) -> None:
 def label_offsets(dots: Array, names: Sequence[str], room: Array, size: float = POINT) -> Array:
     """Where the middle of each name goes, in points from its dot: the place that covers least, near ones first.
 
-    `dots` (n, 2) and `room` (2,) are in points from the lower left corner of the axes. One name after the other, those
-    with most neighbours first, takes the best of places around its dot.
+    `dots` (n, 2) and `room` (2,) are in points from the lower left corner; those with most neighbours come first.
     """
     boxes: list[tuple[float, float, float, float]] = []
     offsets = np.zeros_like(dots)

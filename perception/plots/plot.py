@@ -159,10 +159,8 @@ def plot_observed(found: Observed[Any, Any], ax: Axes | None = None) -> Axes:
 def plot_roc(shown: Percept | PairScore, ax: Axes | None = None) -> Axes:
     """Draw the share of hits against that of false alarms over all criteria, h = Φ(d′ + Φ⁻¹(f)).
 
-    Of a percept it is the detection of the icon by each channel whose sensation rises, with the largest rise as d′:
-    hits are reports of the icon, false alarms reports of nothing. Of a pair of a ranking it is telling the second icon
-    from the first in one trial, with its d′ from memory, the median over people. The area below, Φ(d′/√2), is what a
-    choice between two intervals gets right.
+    Of a percept d′ is the largest rise of each channel; of a pair of a ranking it is from memory. The area below,
+    Φ(d′/√2), is what a choice between two intervals gets right.
     """
     axes = new_axes(ax, (4.2, 4.2))
     # Evenly spaced criteria and not false alarms, so that the curve is smooth in the corners too.

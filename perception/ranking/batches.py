@@ -16,7 +16,7 @@ from thermicon.circuit.cores import cores
 from thermicon.circuit.program import DRIVES
 from thermicon.circuit.program import code_digest as digest_of
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 from ..identification.confusion import NAMED_SAMPLES, SAMPLES, normalised, sampling_error
 from ..identification.measures import experiments_bits, information_bits
 from ..identification.population import (
@@ -28,7 +28,7 @@ from ..identification.population import (
     respond,
 )
 from ..identification.task import USUAL, Task
-from ..kernels.parallel import in_order, own_arrays
+from ..kernels.parallel import in_order
 from ..observer.observer import NORMS, Norm, Observer
 from ..observer.observer_model import Crowd, ObserverModel, Tracking
 from ..observer.people import People

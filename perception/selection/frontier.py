@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import takewhile
 from typing import TYPE_CHECKING, Any, Unpack
 
 from thermicon.circuit.rig.rig import AnyRig, Rig
@@ -192,15 +191,18 @@ def frontier(
 
     def judged(felt: FeltResult, draws: int, step: Callable[[], None]) -> Frontier:
         chooser.feel(felt)
-        each = (chooser.best(count, draws, step) for count in sizes)
-        points = tuple(takewhile(lambda choice: choice is not None, each))  # where none keeps the limits, nor do more
+        points: list[Choice] = []
+        for count in sizes:
+            if (choice := chooser.best(count, draws, step)) is None:  # nor will more keep the limits
+                break
+            points.append(choice)
         if not points:
             raise ChoiceError(chooser.pool.nothing_fits(asked))
         outcome = SetOutcome.of_pool(chooser.whole, felt)
         goals = () if wanted is None else tuple(judge_goal(wanted, outcome, point) for point in points)
         people = len(felt.pairs)
         own = replace(job, people=people)
-        return Frontier(icons, own, crowd.model, points, goals, draws, chooser.whole.amber, people < job.people)
+        return Frontier(icons, own, crowd.model, tuple(points), goals, draws, chooser.whole.amber, people < job.people)
 
     for felt in felt_by_people(job, PEOPLE, step):
         if len(felt.pairs) == job.people:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
+from ..criteria import FELT_FROM
 from ..identification.episodes import dprimes_from_memory
 from ..identification.population import run_end_s
 from ..observer.observer import Norm, Observer
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
 
 POOL_HZ = 25.0
 """Rows a second of a pool that is only tried out."""
-AN_ALERT = 0.5
-"""What fewer trials than these report is no alert: it is chosen only if asked for. A choice of this project."""
 BLOCK = 4
 """Fewer icons are solved together with repetitions: by the code that people need anyway, not by another for one."""
 
@@ -135,7 +134,7 @@ class Pool:
         wanted, onset = (None, None) if goal is None else (goal.of("detected"), goal.of("onset"))
         felt = detect(self.cold, self.warm, self.dt_s, observer, path_m=observer.path_m(self.rig.site))
         for place, (share, felt_s) in enumerate(zip(felt.probability.tolist(), felt.onset_s.tolist(), strict=True)):
-            least = wanted if wanted is not None else 0.0 if self.icons[place].name in must else AN_ALERT
+            least = wanted if wanted is not None else 0.0 if self.icons[place].name in must else FELT_FROM
             if found[place] is not None:
                 continue
             if share < least:

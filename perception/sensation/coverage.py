@@ -1,8 +1,4 @@
-"""Where data end: one sentence for every way in which an icon lies outside the data behind the predictions.
-
-The limits are data (`data/coverage.toml`): temperatures and rates of skin and receptors, and the sites
-for which detection thresholds are published.
-"""
+"""Where data end: one sentence for every way in which an icon lies outside the data (`data/coverage.toml`)."""
 
 from __future__ import annotations
 
@@ -71,16 +67,13 @@ def nearest_site(site: str) -> tuple[str | None, str]:
 
 def _temperatures(record: Record, places: tuple[tuple[str, Array], ...], time_s: Array) -> list[str]:
     """The place that goes furthest below and above, one sentence each: the others follow from it."""
-    low, high = record.interval
-    said = []
-    name, coldest = min(places, key=lambda place: float(place[1].min()))
-    if coldest.min() < low:
-        shown, limit = significant(float(coldest.min()), low)
-        said.append(f"{name} falls to {shown} °C ({time_s[coldest.argmin()]:.1f} s); data begin at {limit} °C")
-    name, warmest = max(places, key=lambda place: float(place[1].max()))
-    if warmest.max() > high:
-        shown, limit = significant(float(warmest.max()), high)
-        said.append(f"{name} rises to {shown} °C ({time_s[warmest.argmax()]:.1f} s); data end at {limit} °C")
+    said, (low, high) = [], record.interval
+    for sign, bound, moves, data in ((-1.0, low, "falls", "begin"), (1.0, high, "rises", "end")):
+        name, course = max(places, key=lambda place: float((sign * place[1]).max()))
+        k = int((sign * course).argmax())
+        if sign * (course[k] - bound) > 0.0:
+            shown, limit = significant(float(course[k]), bound)
+            said.append(f"{name} {moves} to {shown} °C ({time_s[k]:.1f} s); data {data} at {limit} °C")
     return said
 
 

@@ -16,9 +16,9 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import Array
+from ..arrays import Array, as_rows
 from ..criteria import FELT_FROM
-from ..kernels.parallel import as_rows, over_rows
+from ..kernels.parallel import over_rows
 from ..observer.observer import CHANNELS, Channel, Observer
 
 
@@ -40,7 +40,6 @@ def quarters(sd: float) -> Array:
 
 STEP_S = 0.02
 """Step of response times, over which they are linear: far below the spread of any of them."""
-UNTIMED = "there are no response times: call detect with times=True"
 LATEST_S = 5.0
 """Longest delay from the end of the sensations to a report that response times resolve; slower ones count as this."""
 
@@ -54,8 +53,8 @@ def report_step(dt_s: float) -> float:
 class Detection:
     """Trials that end in a report, arrays over traces: `probability` (...,), `cold_share` (...,) of the reports.
 
-    `reported` (..., n_time) is the probability of a report by each time, `dt_s` apart; None where it was not asked for.
-    Reports of noise alone are left out: an icon without any change has probability 0.
+    `reported` (..., n_time) is that of a report by each time, `dt_s` apart (None: not asked for). Without any change an
+    icon has probability 0: reports of noise alone are left out.
     """
 
     probability: Array
@@ -71,33 +70,31 @@ class Detection:
     @property
     def onset_s(self) -> Array:
         """Median response time (...,) of the trials that end in a report, s; NaN where the icon is not felt."""
-        if self.reported is None:
-            raise ValueError(UNTIMED)
-        rows = self.reported.reshape(-1, self.reported.shape[-1])
+        rows = self.courses.reshape(-1, self.courses.shape[-1])
         time: Array = self.dt_s * np.arange(rows.shape[1], dtype=np.float64)
         half = zip(rows, self.felt.reshape(-1).tolist(), strict=True)
         found = [time_of(row, time, 0.5 * float(row[-1])) if felt else math.nan for row, felt in half]
         return np.array(found).reshape(self.probability.shape)
 
+    @property
+    def courses(self) -> Array:
+        """What `reported` holds; a ValueError where it was not asked for."""
+        if self.reported is None:
+            raise ValueError("there are no response times: call detect with times=True")
+        return self.reported
+
     def reported_sum(self) -> Array:
         """Number of persons, the first axis, who have reported by each time, with that axis kept (1, ..., n_time)."""
-        if self.reported is None:
-            raise ValueError(UNTIMED)
-        return np.asarray(self.reported.sum(axis=0, keepdims=True))
+        return np.asarray(self.courses.sum(axis=0, keepdims=True))
 
     @property
     def channel(self) -> NDArray[np.int64]:
         """Channel (...,) that most reports go by: −1 not felt, 0 cold, 1 warm."""
-        if self.reported is None:
-            raise ValueError(UNTIMED)
         return np.where(self.felt, np.where(self.cold_share >= 0.5, 0, 1), -1).astype(np.int64)
 
 
 def pooled(probability: Array, cold_share: Array, reported: Array, dt_s: float) -> Detection:
-    """Detection by a person drawn at random, from each person's probability and cold share (persons, ...).
-
-    `reported` (..., n_time) is the sum over the persons of the probability of a report by each time, `dt_s` apart.
-    """
+    """Detection by a person drawn at random, from persons (persons, ...) and the sum of their `reported`."""
     total, by_cold = probability.sum(axis=0), (probability * cold_share).sum(axis=0)
     share = np.divide(by_cold, total, out=np.zeros_like(total), where=total > 0.0)
     persons = len(probability)
@@ -118,9 +115,8 @@ def detect(
 ) -> Detection:
     """Run the yes/no procedure on sensations of shape (..., n_time), with response `times` or without.
 
-    What is detected is the change of sensation from the first sample, whose gain differs from presentation to
-    presentation; the window of a crossing is that of the sensations. The criteria are multiples of the observer's; the
-    four keywords are one number or one for each leading index.
+    What is detected is the change from the first sample, whose gain differs from presentation to presentation. Criteria
+    are multiples of the observer's; the four keywords are one number or one for each leading index.
     """
     from ..kernels.reports import report
 
@@ -177,10 +173,9 @@ def criterion_of(rate: float, correlation_s: float, wait_s: float) -> float:
 
 
 def log_no_crossing(criterion: float, correlation_s: float, wait_s: float) -> float:
-    """Log probability that one channel's noise stays below the criterion: the rule of `first_passage` without change.
+    """Log probability that one channel's noise, of autocorrelation e^(−t²/2τ²), stays below the criterion.
 
-    The noise is unit Gaussian with autocorrelation e^(−t²/2τ²); crossings of a level not yet
-    passed come at Rice's rate over the probability of being below.
+    Crossings come at Rice's rate over the probability of being below.
     """
     below = 0.5 * math.erfc(-criterion / math.sqrt(2.0))
     rate = math.exp(-0.5 * criterion * criterion) / (2.0 * math.pi * correlation_s)

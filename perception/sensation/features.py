@@ -68,10 +68,7 @@ def passing_s(trace: Trace, channel: Channel, threshold_K: float) -> float | Non
 
 
 def peak_lead_s(trace: Trace, percept: Percept, channel: Channel) -> float | None:
-    """Predicted felt peak minus the peak of the skin in the same direction, s on the percept clock (< 0: felt first).
-
-    A peak that is held is dated by when it comes within 1 %. None where the channel feels nothing or the skin rests.
-    """
+    """Predicted felt peak minus that of the skin (held: within 1 %), s on the percept clock; None where one rests."""
     felt = percept.felt_peak_s(channel)
     skin = _change(trace.skin_C) * (-1.0 if channel == "cold" else 1.0)
     if felt is None or skin.max() < STILL_K:

@@ -1,7 +1,6 @@
 """What a cue feels like: two traces of sensation, when and where it was first felt, and when it peaked.
 
-Three clocks, each named where it is used: the receptor clock starts with the cue; the percept clock
-is later by conduction; the response clock by conduction and decision.
+The receptor clock starts with the cue; the percept clock is later by conduction; the response clock by decision too.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from numpy.typing import ArrayLike
 from thermicon.icons.drawn import Drawn
 from thermicon.icons.model.arguments import checked
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 from ..criteria import FELT_FROM
 from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
@@ -76,12 +75,10 @@ class Percept(Drawn):
     outside_data: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("psi_cold", "psi_warm"):
-            own = np.array(getattr(self, name), dtype=np.float64)
+        own_arrays(self, "psi_cold", "psi_warm")
+        for name, own in (("psi_cold", self.psi_cold), ("psi_warm", self.psi_warm)):
             if own.ndim != 1 or not np.isfinite(own).all():
                 raise ValueError(f"{name} must be one trace of finite numbers, not shape {own.shape}")
-            own.setflags(write=False)
-            object.__setattr__(self, name, own)
         if self.psi_cold.shape != self.psi_warm.shape:
             raise ValueError(f"psi_cold has {self.psi_cold.size} samples and psi_warm {self.psi_warm.size}")
         if not self.dt_s > 0.0:
@@ -100,10 +97,7 @@ class Percept(Drawn):
         return self.dt_s * np.arange(self.psi_cold.size, dtype=np.float64)
 
     def peak_s(self, channel: Channel) -> float | None:
-        """When the sensation of a channel is strongest, s on the receptor clock; None where it does not rise.
-
-        Between samples the peak is that of the parabola through the largest one and its neighbours.
-        """
+        """When the sensation of a channel is strongest, s on the receptor clock; None where it does not rise."""
         psi = self.psi_cold if channel == "cold" else self.psi_warm
         k = int(psi.argmax())
         if not psi[k] > psi[0]:
@@ -207,11 +201,9 @@ def perceive_many(
     threshold_cold: ArrayLike = 1.0,
     threshold_warm: ArrayLike = 1.0,
 ) -> tuple[Array, Array]:
-    """Sensations (cold, warm) of many traces, shape (..., n_time) like what the receptors receive.
+    """Sensations (cold, warm) of many traces, shape (..., n_time) like what the receptors receive (`receptor_column`).
 
-    That is °C at the depth of each channel or, for an observer of heat flow, W/m² into the skin there
-    (`receptor_column` names the columns). The threshold multipliers are one number or one for each
-    leading index.
+    The threshold multipliers are one number or one for each leading index.
     """
     felt = []
     multiples = {"cold": threshold_cold, "warm": threshold_warm}
@@ -230,10 +222,6 @@ def on_one_clock(percepts: Sequence[Percept]) -> tuple[Array, Array, float]:
         if not math.isclose(each.dt_s, dt, rel_tol=1e-9):
             raise ValueError(f"percepts are on clocks of {dt:g} s and {each.dt_s:g} s: simulate all at one rate")
     n = max(each.psi_cold.size for each in percepts)
-    cold = np.stack([_held(each.psi_cold, n) for each in percepts])
-    warm = np.stack([_held(each.psi_warm, n) for each in percepts])
+    cold = np.stack([np.pad(each.psi_cold, (0, n - each.psi_cold.size), "edge") for each in percepts])
+    warm = np.stack([np.pad(each.psi_warm, (0, n - each.psi_warm.size), "edge") for each in percepts])
     return cold, warm, dt
-
-
-def _held(psi: Array, n: int) -> Array:
-    return np.concatenate([psi, np.full(n - psi.size, psi[-1])])

@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 def received(trace: Trace, observer: Observer) -> Both[Array]:
     """What cold and warm receptors go by, (rows,) on the uniform clock of the trace: °C, or W/m² into the skin.
 
-    The trace begins steady, and its skin is linear, so that its display alone decides. A rig that places its receptors
-    itself has them where the columns of the trace say.
+    The trace begins steady, and its skin is linear: its display alone decides, unless a rig places its receptors.
     """
     from thermicon.circuit.solver.modes import thermode_modes
 

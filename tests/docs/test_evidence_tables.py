@@ -47,6 +47,7 @@ def test_ablation_and_predictions_are_complete() -> None:
 
 
 def test_stacking_mixes_variants_that_are_good_at_different_rows() -> None:
+    np.testing.assert_allclose(stacking_weights(np.array([[0.0, 0.0], [-9.0, -9.0]])), [1.0, 0.0], atol=5e-3)
     weights = stacking_weights(np.log(np.array([[0.9, 0.9, 0.1], [0.1, 0.1, 0.9]])))
     assert weights.sum() == pytest.approx(1.0)
     assert 0.5 < weights[0] < 0.9

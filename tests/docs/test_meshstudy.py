@@ -7,6 +7,7 @@ import pytest
 
 from source_paper.meshstudy import SHIPPED, WAYS, MeshStudy, mesh_study
 from source_paper.paper import cooling_step
+from source_paper.studydraw import plot_mesh_study
 from thermicon.circuit import Drive, Rig
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.steady import steady_state
@@ -75,9 +76,10 @@ def test_one_and_five_elements_are_too_few_at_onset_and_enough_later(control: st
 
 def test_a_study_is_a_table_and_a_picture() -> None:
     found = study("shani2021", "skin", "current")
-    assert set(found.to_frame()["stimulus"]) == {"cooling-step (skin)"}
-    assert (found.rows()[3].mesh, found.rows()[3].lumps) == ("1 + 5 elements", 6)
-    axes = found.plot()
+    table = found.to_frame()
+    assert (table["mesh"][3], table["lumps"][3]) == ("1 + 5 elements", 6)
+    axes = plot_mesh_study(found)
+    assert axes.get_title(loc="left").startswith("cooling-step (skin), same current")
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("time (s)", "error (mK)")
 
 

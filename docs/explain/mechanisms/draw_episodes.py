@@ -19,10 +19,7 @@ HEADROOM = 1.42
 
 
 def plot_episodes(percept: Percept, episodes: Sequence[Episode], bar: float, ax: Axes | None = None) -> Axes:
-    """Draw both sensations, the bar of an episode (d′), and what is remembered of them as bands; return the axes.
-
-    The length of an episode that the end of the trace cuts is not remembered, and not written.
-    """
+    """Draw both sensations, the bar of an episode (d′), and what is remembered of them as bands; return the axes."""
     axes = new_axes(ax, (6.0, 3.0))
     axes.plot(percept.time_s, percept.psi_cold, color=COOL, lw=1.8, label="cold")
     axes.plot(percept.time_s, percept.psi_warm, color=WARM, lw=1.8, ls=(0, (5, 1.2)), label="warm")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -31,40 +31,27 @@ def plot_ablation(rows: Sequence[AblatedRow], ax: Axes | None = None) -> Axes:
     axes.axvspan(-SAYS_NOTHING, SAYS_NOTHING, color="#eeeeee", zorder=0)
     axes.barh(places, values, color=colours, height=0.7)
     for place, value in zip(places.tolist(), values.tolist(), strict=True):
-        left = value < 0.0
-        at = (-4, 0) if left else (4, 0)
-        axes.annotate(
-            f"{value:.1f}".replace("-", "−"),
-            (value, place),
-            at,
-            textcoords="offset points",
-            va="center",
-            ha="right" if left else "left",
-            fontsize="small",
-        )
-    axes.set_yticks(places, [_run(row) for row in shown])
+        words, side, away = f"{value:.1f}".replace("-", "−"), *(("right", -4) if value < 0.0 else ("left", 4))
+        where: dict[str, Any] = {"textcoords": "offset points", "va": "center", "ha": side, "fontsize": "small"}
+        axes.annotate(words, (value, place), (away, 0), **where)
+    axes.set_yticks(places, [f"without {row.without}" if row.without else row.variable for row in shown])
     axes.set_xscale("symlog", linthresh=10.0)
     axes.set_xlim(3.0 * float(values.min()), 10.0)
     axes.set_xticks([-100.0, -30.0, -10.0, -5.0, 0.0, 5.0], ["−100", "−30", "−10", "−5", "0", "5"])
     axes.minorticks_off()
     axes.invert_yaxis()
-    axes.set_xlabel("log evidence against the whole (grey: says nothing)")
+    return _tidied(axes, "log evidence against the whole (grey: says nothing)")
+
+
+def _tidied(axes: Axes, x_label: str) -> Axes:
+    axes.set_xlabel(x_label)
     axes.spines[["top", "right", "left"]].set_visible(False)
     axes.tick_params(axis="y", length=0)
     return axes
 
 
-def _run(row: AblatedRow) -> str:
-    if row.without:
-        return f"without {row.without}"
-    return row.variable
-
-
 def plot_left_out(rows: Sequence[PredictedRow], ax: Axes | None = None) -> Axes:
-    """Draw how far each published number lies from its prediction without its experiment, in SDs of both together.
-
-    The grey band holds 95 % if the model and its errors are right; rows outside have an open marker.
-    """
+    """Draw how far each published number lies from its prediction without its experiment; open markers are missed."""
     axes = new_axes(ax, (7.2, 0.2 * len(rows) + 1.2))
     places = np.arange(len(rows))
     axes.axvspan(-1.96, 1.96, color="#eeeeee", zorder=0)
@@ -77,18 +64,12 @@ def plot_left_out(rows: Sequence[PredictedRow], ax: Axes | None = None) -> Axes:
     axes.set_yticks(places, [f"{row.experiment}  {row.label}" for row in rows], fontsize=7)
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_xlim(-4.0, 4.0)
-    axes.set_xlabel("published minus predicted (SD of both)")
     axes.set_title("Left-out rows (open: missed)", loc="left", fontsize="medium")
-    axes.spines[["top", "right", "left"]].set_visible(False)
-    axes.tick_params(axis="y", length=0)
-    return axes
+    return _tidied(axes, "published minus predicted (SD of both)")
 
 
 def plot_published_predicted(rows: Sequence[PredictedRow], ax: Axes | None = None) -> Axes:
-    """Draw predictions without the experiment against published numbers that are positive, with 95 % intervals.
-
-    Only times, temperatures and ratings are drawn, as ratios: what is published divided by it is the dotted line.
-    """
+    """Draw predictions without the experiment over published times, temperatures and ratings, with 95 % intervals."""
     shown = [row for row in rows if row.unit in LOG_UNITS or row.unit.startswith("times")]
     axes = new_axes(ax, (7.0, 0.27 * len(shown) + 1.4))
     axes.axvline(1.0, color=GREY, lw=1.0, ls=":")
@@ -104,10 +85,7 @@ def plot_published_predicted(rows: Sequence[PredictedRow], ax: Axes | None = Non
     axes.set_xlim(0.08, 32.0)
     axes.set_yticks(range(len(shown)), [f"{row.experiment}  {row.label}" for row in shown], fontsize=8)
     axes.set_ylim(len(shown) - 0.4, -0.6)
-    axes.set_xlabel("prediction / published (dot, bar: left out; tick: fitted)")
-    axes.spines[["top", "right", "left"]].set_visible(False)
-    axes.tick_params(axis="y", length=0)
-    return axes
+    return _tidied(axes, "prediction / published (dot, bar: left out; tick: fitted)")
 
 
 def plot_narrowing(constants: Sequence[Constant], ax: Axes | None = None) -> Axes:
@@ -124,7 +102,4 @@ def plot_narrowing(constants: Sequence[Constant], ax: Axes | None = None) -> Axe
     axes.set_yticks(places, [each.name for each in shown], fontsize=7)
     axes.set_ylim(len(shown) - 0.4, -0.6)
     axes.set_xlim(0.0, 1.04)
-    axes.set_xlabel("SD over the prior's SD (grey: over 0.9, as good as assumed)")
-    axes.spines[["top", "right", "left"]].set_visible(False)
-    axes.tick_params(axis="y", length=0)
-    return axes
+    return _tidied(axes, "SD over the prior's SD (grey: over 0.9, as good as assumed)")

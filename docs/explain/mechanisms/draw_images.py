@@ -26,12 +26,7 @@ def draw_mechanisms(folder: Path) -> None:
 
     from mechanisms.draw_effects import plot_effect, plot_onset_stages
     from mechanisms.draw_episodes import episodes_figure
-    from mechanisms.draw_evidence import (
-        plot_ablation,
-        plot_left_out,
-        plot_narrowing,
-        plot_published_predicted,
-    )
+    from mechanisms.draw_evidence import plot_ablation, plot_left_out, plot_narrowing, plot_published_predicted
     from mechanisms.effects import EFFECTS
     from mechanisms.onset_stages import onset_stages
     from thermicon.circuit import Rig, simulate

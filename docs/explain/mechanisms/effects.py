@@ -1,7 +1,6 @@
 """What each mechanism does to a cue: the same stimulus with it and without it, as curves to draw.
 
-Skin is the skin of the inference under its own thermode, receptors and sensation are the shipped
-observer's. Nothing here is conditioned on or predicted for an experiment: it shows what an equation means.
+Skin is that of the inference under its own thermode, receptors and sensation are the shipped observer's.
 """
 
 from __future__ import annotations
@@ -16,7 +15,6 @@ from numpy.typing import ArrayLike
 from thermicon.circuit.solver.modes import thermode_modes
 from thermicon.perception.arrays import Array
 from thermicon.perception.experiments.laboratory import Corner, course_of, load_rig
-from thermicon.perception.kernels.parallel import own_arrays
 from thermicon.perception.observer.channels import CHANNELS, Channel, sign_of
 from thermicon.perception.observer.mechanisms.limits import NO_LIMIT_C
 from thermicon.perception.observer.observer import Observer
@@ -32,24 +30,18 @@ PEOPLE_SHARES = (0.05, 0.5, 0.95)
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """One curve by its label: `x` and `y` (n,) read-only, in the units of the axes of its effect."""
+    """One curve by its label: `x` and `y` (n,), in the units of the axes of its effect."""
 
     label: str
     look: Look
     x: Array
     y: Array
 
-    def __post_init__(self) -> None:
-        own_arrays(self, "x", "y")
-        if self.x.shape != self.y.shape or self.x.ndim != 1:
-            raise ValueError(f"{self.label}: a curve needs as many x as y, not {self.x.shape} and {self.y.shape}")
-
 
 @dataclass(frozen=True, slots=True)
 class Effect:
     """What a mechanism does to a cue: curves with and without it, and what the axes show."""
 
-    mechanism: str
     title: str
     x_label: str
     y_label: str
@@ -69,24 +61,19 @@ def limits_effect() -> Effect:
         Curve("cold, limit off", "off", time, _felt(corners, "cold", free, time, baseline_C=38.0)),
     ]
     title = "A fall from 38 to 31 °C at 1 K/s (forearm)"
-    return Effect("limits", title, "time (s)", "sensation (d′)", tuple(curves))
+    return Effect(title, "time (s)", "sensation (d′)", tuple(curves))
 
 
 def adaptation_effect() -> Effect:
     """Skin held 1, 3 and 8 K colder for a minute: cold fades inside the neutral zone, and stays beyond it."""
     time, observer = _clock(60.0), Observer.load()
     sizes: tuple[tuple[float, Look], ...] = ((8.0, "cold"), (3.0, "reference"), (1.0, "other"))
-    curves = [
-        Curve(
-            f"to {32.0 - size:.0f} °C",
-            look,
-            time,
-            _felt([(1.0, 0.0), (1.0 + size / 2.0, -size)], "cold", observer, time),
-        )
-        for size, look in sizes
-    ]
+    curves = []
+    for size, look in sizes:
+        felt = _felt([(1.0, 0.0), (1.0 + size / 2.0, -size)], "cold", observer, time)
+        curves.append(Curve(f"to {32.0 - size:.0f} °C", look, time, felt))
     title = "A held fall from 32 °C: complete adaptation to 30 °C"
-    return Effect("adaptation", title, "time (s)", "sensation of cold (d′)", tuple(curves))
+    return Effect(title, "time (s)", "sensation of cold (d′)", tuple(curves))
 
 
 def depth_effect() -> Effect:
@@ -102,7 +89,7 @@ def depth_effect() -> Effect:
             change = _course(site, at, 32.0, [(0.5, -5.0)], time.size)
             curves.append(Curve(f"{site}, {counted}", look, time, change - change[0]))
     title = "A fall by 5 K in 0.5 s at the cold receptors"
-    return Effect("depth", title, "time (s)", "change of temperature (K)", tuple(curves))
+    return Effect(title, "time (s)", "change of temperature (K)", tuple(curves))
 
 
 def summation_effect() -> Effect:
@@ -117,7 +104,7 @@ def summation_effect() -> Effect:
         power = (area / (observer.reference_area_m2 * 1e4)) ** observer.area_exponent.of(channel)
         curves.append(Curve(f"{channel}, no ends", look, area, power))
     title = "Sensitivity by area of contact (1 at 9 cm²)"
-    return Effect("summation", title, "area of contact (cm²)", "sensitivity", tuple(curves), log_x=True, log_y=True)
+    return Effect(title, "area of contact (cm²)", "sensitivity", tuple(curves), log_x=True, log_y=True)
 
 
 def transducer_effect() -> Effect:
@@ -129,9 +116,7 @@ def transducer_effect() -> Effect:
         Curve("p = 2 (square law)", "off", drive, replace(whole, p=2.0).psi(drive)),
     ]
     title = "Sensation by receptor drive"
-    return Effect(
-        "transducer", title, "drive (multiples of threshold)", "sensation (d′)", tuple(curves), log_x=True, log_y=True
-    )
+    return Effect(title, "drive (multiples of threshold)", "sensation (d′)", tuple(curves), log_x=True, log_y=True)
 
 
 def gain_noise_effect() -> Effect:
@@ -143,7 +128,7 @@ def gain_noise_effect() -> Effect:
         Curve("additive noise alone", "off", sizes, 100.0 * _noticed(sizes, replace(whole, gain_noise=0.0))),
     ]
     title = "One person, a fall at 2.5 K/s and 1.5 s of hold (forearm)"
-    return Effect("gain noise", title, "size of the fall (K)", "noticed (%)", tuple(curves))
+    return Effect(title, "size of the fall (K)", "noticed (%)", tuple(curves))
 
 
 def criteria_effect() -> Effect:
@@ -162,7 +147,7 @@ def criteria_effect() -> Effect:
         for word, look, share in zip(words, looks, PEOPLE_SHARES, strict=True)
     ]
     title = "Three people who differ in criterion alone"
-    return Effect("criterion between people", title, "size of the fall (K)", "noticed (%)", tuple(curves))
+    return Effect(title, "size of the fall (K)", "noticed (%)", tuple(curves))
 
 
 EFFECTS: Mapping[str, Callable[[], Effect]] = {

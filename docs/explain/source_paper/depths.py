@@ -48,32 +48,19 @@ class Likeness:
 
     depth_m: float
     residual_K: float
-    largest_change_K: float
-
-    def __repr__(self) -> str:
-        return (
-            f"Likeness(most like {self.depth_m * 1e3:.2f} mm, "
-            f"residual {self.residual_K:.3f} K rms of {abs(self.largest_change_K):.2f} K)"
-        )
 
 
 def resembles(cue: Icon | Drive, rig: Rig, pad: Pad, *, tail_s: float = 0.0) -> Likeness:
-    """Return the depth in the skin under the display whose course a thermistor on insulated skin resembles most.
-
-    The depth with the least rms difference of the changes from the first row; changes, since the start of a trace does
-    not depend on depth. The insulated skin is that under a round pad, with heat flowing sideways; the skin under the
-    display has depth alone.
-    """
+    """Return the depth in the skin under the display whose changes a thermistor on insulated skin resembles most."""
     depth = np.concatenate([[0.0], rig.column.depth_m, [rig.skin.thickness_m]])
     run = probe_depths(cue, rig, depth, tail_s=tail_s)
     read = pad.reads(run.trace, rig)
-    best = _nearest(rig, depth, run.temperature_C - run.temperature_C[:, :1], read - read[0])
-    return Likeness(best[0], best[1], float((read - read[0])[np.argmax(np.abs(read - read[0]))]))
+    return _nearest(rig, depth, run.temperature_C - run.temperature_C[:, :1], read - read[0])
 
 
-def _nearest(rig: Rig, depth_m: Array, change_K: Array, wanted_K: Array) -> tuple[float, float]:
-    """Return (depth m, rms K) of the nearest course; between two lumps the best share has a closed form."""
-    best = (0.0, np.inf)
+def _nearest(rig: Rig, depth_m: Array, change_K: Array, wanted_K: Array) -> Likeness:
+    """The nearest course; between two lumps the best share has a closed form."""
+    best = Likeness(0.0, np.inf)
     for k in range(len(depth_m) - 1):
         high, low = depth_m[k], depth_m[k + 1]
         if low - high < 1e-9:
@@ -82,17 +69,14 @@ def _nearest(rig: Rig, depth_m: Array, change_K: Array, wanted_K: Array) -> tupl
         square = float(step @ step)
         share = 0.0 if square == 0 else min(max(float((wanted_K - change_K[k]) @ step) / square, 0.0), 1.0)
         rms = float(np.sqrt(np.mean((wanted_K - change_K[k] - share * step) ** 2)))
-        if rms < best[1]:
-            best = (_depth_at(rig, float(high), float(low), share), rms)
+        if rms < best.residual_K:
+            best = Likeness(_depth_at(rig, float(high), float(low), share), rms)
     return best
 
 
 def _depth_at(rig: Rig, high_m: float, low_m: float, share: float) -> float:
     """Depth in m at a share of the thermal resistance between two depths."""
-    edges = [high_m, *(edge for edge in _edges(rig) if high_m < edge < low_m), low_m]
+    layers = np.cumsum([layer.thickness_m for layer in rig.skin.layers]).tolist()
+    edges = [high_m, *(edge for edge in layers if high_m < edge < low_m), low_m]
     resistance = [rig.skin.resistance_to_m2K_per_W(edge) for edge in edges]
     return float(np.interp(resistance[0] + share * (resistance[-1] - resistance[0]), resistance, edges))
-
-
-def _edges(rig: Rig) -> list[float]:
-    return [float(edge) for edge in np.cumsum([layer.thickness_m for layer in rig.skin.layers])]

@@ -8,14 +8,14 @@ modes are exact; no heat flows back into the display.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
 from thermicon.circuit.arrays import Array, Index
 from thermicon.circuit.cores import quiet_blas
-from thermicon.circuit.records import Table, load_records
+from thermicon.circuit.records import load_records
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.skin import Column, column_of
 from thermicon.circuit.solver.modes import SkinModes
@@ -35,12 +35,6 @@ SMALL = 1e-5
 """Modes with less than this share of the reading are taken as settled."""
 
 
-@cache
-def insulation_records() -> Table:
-    """Sourced and assumed numbers of the pad and of the distance to skin in contact."""
-    return load_records(Path(__file__).with_name("insulated-probe.toml"))
-
-
 @dataclass(frozen=True, slots=True)
 class Pad:
     """A thermistor under a round pad: distance to skin in contact m, diameter m, depth m, insulation m²·K/W."""
@@ -53,7 +47,7 @@ class Pad:
     @staticmethod
     def of(lateral_m: float | None = None, depth_m: float = 0.0) -> Pad:
         """The pad of the records, with the thermistor in its middle, at a distance or the assumed one."""
-        records = insulation_records()
+        records = load_records(Path(__file__).with_name("insulated-probe.toml"))
         lateral = records.one("lateral distance").central * 1e-3 if lateral_m is None else lateral_m
         insulation = records.one("aerogel thickness").central * 1e-3 / records.one("aerogel conductivity").central
         return Pad(lateral, 2 * lateral, depth_m, insulation)

@@ -1,13 +1,9 @@
-"""How much a mesh of the skin matters: graded meshes and fixed elements compared with a mesh-converged solution.
-
-Two comparisons are fair, and both are available: every mesh with the same `current` (as on one rig), and every mesh
-along the same controlled `temperature` with its own current (as a cue prescribes).
-"""
+"""How much a mesh of the skin matters: graded meshes and fixed elements compared with a mesh-converged solution."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,7 +22,6 @@ from thermicon.icons import Icon
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.axes import Axes
 
 WAYS = ("current", "temperature")
 DEPTHS = ("cold_receptor_C", "warm_receptor_C")
@@ -41,13 +36,6 @@ class Mesh:
     growth: float = CELL_GROWTH
     elements: tuple[int, ...] | None = None
 
-    @property
-    def section(self) -> str:
-        """Section type and how depths between lumps are read."""
-        if self.elements is not None:
-            return "T-sections, lump in the middle of each element; depths linear in thermal resistance"
-        return "graded, lumps at the ends of cells; receptor depths are lumps"
-
 
 SHIPPED = Mesh("shipped")
 CONVERGED = Mesh("converged", 5e-6, 0.02)
@@ -60,9 +48,6 @@ def usual_meshes(rig: Rig) -> tuple[Mesh, ...]:
     layers = len(rig.skin.layers)
     outer = max(1, layers - 3)
     fixed = [(1,) * outer + (few,) * (layers - outer) for few in (5, 10, 20)]
-    own_elements = rig.skin.elements
-    if own_elements is not None and own_elements not in fixed:
-        fixed.insert(0, own_elements)
     return (
         SHIPPED,
         Mesh("twice as coarse", 2 * FIRST_CELL_M, 2 * CELL_GROWTH),
@@ -72,30 +57,12 @@ def usual_meshes(rig: Rig) -> tuple[Mesh, ...]:
 
 
 @dataclass(frozen=True, slots=True)
-class MeshRow:
-    """Largest errors of one mesh in K, when they were in s, and in parts of the change so far at 0.5 s and 4 s."""
-
-    mesh: str
-    section: str
-    lumps: int
-    cold_error_K: float
-    cold_error_s: float
-    warm_error_K: float
-    warm_error_s: float
-    cold_part_at_half_s: float
-    warm_part_at_half_s: float
-    cold_part_at_4_s: float
-    warm_part_at_4_s: float
-
-
-@dataclass(frozen=True, slots=True)
 class MeshStudy:
     """Errors of m meshes at both receptor depths; `error_K` (m, 2, rows), `reference_C` (2, rows): cold, then warm.
 
-    `reference_error_K` is what halving the converged mesh still changes; `display_swing_K` what the display did.
+    `reference_error_K` is what halving the converged mesh changes.
     """
 
-    rig_name: str
     stimulus: str
     way: str
     meshes: tuple[Mesh, ...]
@@ -106,68 +73,36 @@ class MeshStudy:
     reference_error_K: float
     display_swing_K: float
 
-    def __post_init__(self) -> None:
-        for array in (self.time_s, self.reference_C, self.error_K):
-            array.setflags(write=False)
-
-    def __repr__(self) -> str:
-        worst = np.abs(self.error_K[0]).max() * 1e3
-        return (
-            f"MeshStudy({self.stimulus} on {self.rig_name}, same {self.way}: {self.meshes[0].name} mesh within "
-            f"{worst:.1f} mK; reference within {self.reference_error_K * 1e3:.2f} mK)"
-        )
-
     def part(self, mesh: int, at_s: float) -> tuple[float, float]:
         """Error of the change from the start at a time in s, in parts of that change: at cold and at warm depth."""
         row = int(np.searchsorted(self.time_s, at_s - 1e-9))
-        if row >= len(self.time_s):
-            return float("nan"), float("nan")
         so_far = self.reference_C[:, row] - self.reference_C[:, 0]
-        wrong = np.abs(self.error_K[mesh, :, row] - self.error_K[mesh, :, 0])
-        parts = np.divide(wrong, np.abs(so_far), out=np.full(2, np.nan), where=np.abs(so_far) > 1e-6)
-        return float(parts[0]), float(parts[1])
-
-    def rows(self) -> tuple[MeshRow, ...]:
-        """One row for each mesh."""
-        rows = []
-        for k, mesh in enumerate(self.meshes):
-            wrong = np.abs(self.error_K[k])
-            at = wrong.argmax(axis=1)
-            worst = [(float(wrong[d, at[d]]), float(self.time_s[at[d]])) for d in range(2)]
-            parts = (*self.part(k, 0.5), *self.part(k, 4.0))
-            rows.append(MeshRow(mesh.name, mesh.section, self.lumps[k], *worst[0], *worst[1], *parts))
-        return tuple(rows)
+        cold, warm = np.abs((self.error_K[mesh, :, row] - self.error_K[mesh, :, 0]) / so_far).tolist()
+        return cold, warm
 
     def to_frame(self) -> pd.DataFrame:
-        """Return the rows as a table, with stimulus and way."""
+        """Largest errors of each mesh in K, and that at cold depth in parts of the change so far at 0.5 s and 4 s."""
         import pandas as pd
 
-        table = pd.DataFrame([astuple(row) for row in self.rows()], columns=[field.name for field in fields(MeshRow)])
-        table.insert(0, "same", self.way)
-        table.insert(0, "stimulus", self.stimulus)
-        return table
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the error of every mesh in mK against time, solid at cold, dashed at warm depth; returns the Axes."""
-        from .studydraw import plot_mesh_study
-
-        return plot_mesh_study(self, ax)
+        return pd.DataFrame(
+            {
+                "mesh": [mesh.name for mesh in self.meshes],
+                "lumps": self.lumps,
+                "cold_error_K": np.abs(self.error_K[:, 0]).max(axis=1),
+                "warm_error_K": np.abs(self.error_K[:, 1]).max(axis=1),
+                "cold_part_at_half_s": [self.part(k, 0.5)[0] for k in range(len(self.meshes))],
+                "cold_part_at_4_s": [self.part(k, 4.0)[0] for k in range(len(self.meshes))],
+            }
+        )
 
 
 def mesh_study(
-    rig: Rig,
-    cue: Icon | Drive,
-    *,
-    way: str = "current",
-    meshes: Sequence[Mesh] | None = None,
-    rate_Hz: float = 1000.0,
-    tail_s: float = 0.0,
+    rig: Rig, cue: Icon | Drive, *, way: str = "current", meshes: Sequence[Mesh] | None = None, rate_Hz: float = 1000.0
 ) -> MeshStudy:
     """Simulate a cue or a drive on several meshes of a rig's skin, and compare them with a converged one.
 
-    `meshes` are by default the shipped one, coarser and finer ones, and fixed elements. With `way` "current" all get
-    the current designed on the rig as it is; with "temperature" each follows the cue with its own current. Rows and
-    time steps per second are the same for all meshes: at 1000 Hz they do not affect the comparison.
+    With `way` "current" all get the current designed on the rig as it is; with "temperature" each follows the cue
+    with its own. At 1000 Hz rows and time steps do not affect the comparison.
     """
     if way not in WAYS:
         raise RigError(f"way {way!r} is not known; it is one of {', '.join(WAYS)}")
@@ -176,17 +111,19 @@ def mesh_study(
         raise RigError("a drive prescribes no temperature to follow; compare meshes with way='current'")
     meshes = usual_meshes(rig) if meshes is None else tuple(meshes)
     networks = [_network(rig, mesh) for mesh in (*meshes, CONVERGED, HALVED)]
-    plan = _Currents.of(rig, cue, tail_s)
+    plan = _Currents.of(rig, cue)
     rows = rows_until(plan.end_s, rate_Hz)
     runs = []
     for network in networks:
-        drive, state = plan.on(network) if way == "current" else _led(rig, cue, network, plan.end_s)
+        if way == "current":
+            drive, state = plan.drive, state_under_current(network, plan.rest_A)
+        else:
+            drive, state = _led(rig, cue, network, plan.end_s)
         bank, lane = Bank.of([network]), np.zeros(1, dtype=np.int64)
         intervals = cut(rows, drive.time_s, drive.current_A[np.newaxis], drive.held)
         runs.append(run_forward(bank, lane, lane, intervals, bank.states([state]), (*DEPTHS, "display_C"))[:, 0])
     reference, display = runs[-2][:2], runs[-2][2]
     return MeshStudy(
-        rig.name,
         _name(cue),
         way,
         meshes,
@@ -224,18 +161,15 @@ class _Currents:
     end_s: float
 
     @staticmethod
-    def of(rig: Rig, cue: Icon | Drive, tail_s: float) -> _Currents:
+    def of(rig: Rig, cue: Icon | Drive) -> _Currents:
         if isinstance(cue, Drive):
             return _Currents(cue, float(cue.current_A[0]), float(cue.time_s[-1]))
         start = baseline_C(cue, rig)
         if cue.context.control == "current":  # such a cue starts from the current that holds its baseline
             start = design(cue, rig, 0.0).rest_A
-        end = float(cue.corners(start).duration_s) + tail_s
+        end = float(cue.corners(start).duration_s)
         plan = design(cue, rig, end)
         return _Currents(plan.drive, plan.rest_A, end)
-
-    def on(self, network: Network) -> tuple[Drive, Array]:
-        return self.drive, state_under_current(network, self.rest_A)
 
 
 def _led(rig: Rig, cue: Icon | Drive, network: Network, end_s: float) -> tuple[Drive, Array]:

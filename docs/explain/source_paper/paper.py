@@ -1,7 +1,7 @@
 """The source paper's results compared with ours: Shani & Lineykin 2021, Figs. 3 to 6 and statements of its discussion.
 
-Every function plays the paper's cooling step (6 °C at 3 °C/s, 4 s held, back) on a rig, `emulator_rig()` unless another
-is given, and returns data with a `plot`. The paper's own curves are not reproduced: they are not available in numbers.
+Functions play the paper's cooling step (6 °C at 3 °C/s, 4 s held, back) on a rig, `emulator_rig()` unless another is
+given. The paper's own curves are not reproduced: they are not available in numbers.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,9 +24,6 @@ from thermicon.icons import Icon, load_library
 
 from .depths import Likeness, probe_depths, resembles
 from .insulated import Pad
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 TAIL_S = 4.0
 """Time that a run goes on after the cue, for the skin to come back."""
@@ -71,15 +67,8 @@ def coldest_display_C(rig: Rig) -> float:
     return network.read(state_under_current(network, rig.driver.current_max_A), "display_C")
 
 
-def _rig(rig: Rig | None) -> Rig:
-    return emulator_rig() if rig is None else rig
-
-
 def distortion(trace: Trace, of_C: Array) -> float:
-    """How far a course is from any trapezoid of the cue's timing: rms misfit in parts of its own step.
-
-    The cue's target, shifted and scaled to fit best, is the trapezoid; 0 is a perfect one.
-    """
+    """How far a course is from the cue's target, shifted and scaled to fit best: rms in parts of its own step."""
     shape = (trace.target_C - trace.target_C[0]) / np.ptp(trace.target_C)
     columns = np.stack([np.ones_like(shape), shape], axis=1)
     fitted = np.linalg.lstsq(columns, of_C, rcond=None)[0]
@@ -102,34 +91,10 @@ class ControlledCue:
             for name, trace in traces.items()
         }
 
-    def __repr__(self) -> str:
-        controls = ", ".join(f"{name} control: {_said(trace)}" for name, trace in _both(self))
-        return f"ControlledCue({self.skin.rig_name}; {controls})"
-
-    def plot(self, ax: Axes | None = None, control: str = "skin") -> Axes:
-        """Draw target, display and skin under `skin` or `display` control; returns the Axes."""
-        from .studydraw import plot_controlled
-
-        return plot_controlled(self.skin if control == "skin" else self.display, ax)
-
-
-def _both(cue: ControlledCue) -> tuple[tuple[str, Trace], tuple[str, Trace]]:
-    return ("skin", cue.skin), ("display", cue.display)
-
-
-def _said(trace: Trace) -> str:
-    assert trace.outcome is not None
-    reached = "reached" if trace.outcome.reached else "missed"
-    return f"{reached}, {abs(trace.outcome.largest_miss_K):.2g} K off at most"
-
 
 def controlled_cue(rig: Rig | None = None) -> ControlledCue:
-    """Play the cue under both controls (Figs. 3 and 4).
-
-    >>> controlled_cue()
-    ControlledCue(shani2021; skin control: reached, 0.07 K off at most, display control: reached, ... K off at most)
-    """
-    rig = _rig(rig)
+    """Play the cue under both controls (Figs. 3 and 4)."""
+    rig = rig or emulator_rig()
     return ControlledCue(
         simulate(cooling_step("skin"), rig, tail_s=TAIL_S), simulate(cooling_step("display"), rig, tail_s=TAIL_S)
     )
@@ -144,31 +109,11 @@ class Thermistors:
     depth_C: Array
     lateral_m: float
 
-    def __repr__(self) -> str:
-        changes = (f"#{name} {_change(self.trace.probe(name)):.2f} K" for name, _ in self.trace.probes)
-        return f"Thermistors({self.trace.rig_name}; {', '.join(changes)}; {self.likeness!r})"
 
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the change of all three, and of the depth that the third resembles; returns the Axes."""
-        from .studydraw import plot_thermistors
-
-        return plot_thermistors(self, ax)
-
-
-def _change(values: Array) -> float:
-    """Largest change from the start, with its sign."""
-    away = values - values[0]
-    return float(away[np.argmax(np.abs(away))])
-
-
-def thermistors(rig: Rig | None = None, *, lateral_m: float | None = None, control: str = "skin") -> Thermistors:
-    """Put the paper's three thermistors on a rig and play the cue (Figs. 5 and 6).
-
-    `lateral_m` is the distance from the middle of the round insulated patch to skin in contact; None uses the assumed
-    values. The paper gives neither, nor the thermistors' lag: here they have none.
-    """
+def thermistors(rig: Rig | None = None, *, lateral_m: float | None = None) -> Thermistors:
+    """Play the cue with the paper's three thermistors (Figs. 5 and 6), the third so far from skin in contact."""
     probes: list[dict[str, object]] = [{"name": name, "place": place} for name, place in THERMISTORS]
-    rig, cue, pad = _rig(rig).with_(probe=probes), cooling_step(control), Pad.of(lateral_m)
+    rig, cue, pad = (rig or emulator_rig()).with_(probe=probes), cooling_step("skin"), Pad.of(lateral_m)
     likeness = resembles(cue, rig, pad, tail_s=TAIL_S)
     depths = probe_depths(cue, rig, [likeness.depth_m], tail_s=TAIL_S)
     trace = replace(depths.trace, probes=(*depths.trace.probes, ("3", pad.reads(depths.trace, rig))))
@@ -200,18 +145,6 @@ class DermisChange:
             float(np.interp(depth_m, self.depth_m, self.fastest_K_per_s)),
         )
 
-    def __repr__(self) -> str:
-        return (
-            f"DermisChange({self.rig_name}; {self.at(self.receptor_m[0])[0]:.1f} K at {self.receptor_m[0] * 1e3:g} mm, "
-            f"1 K at {self.depth_of_m(1.0) * 1e3:.2f} mm)"
-        )
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw change and fastest fall against depth, with the paper's statements on both; returns the Axes."""
-        from .studydraw import plot_dermis
-
-        return plot_dermis(self, ax)
-
 
 def _crossing(depth_m: Array, values: Array, level: float) -> float:
     below = np.flatnonzero(values <= level)
@@ -221,11 +154,11 @@ def _crossing(depth_m: Array, values: Array, level: float) -> float:
     return float(np.interp(level, [values[k], values[k - 1]], [depth_m[k], depth_m[k - 1]]))
 
 
-def dermis_change(rig: Rig | None = None, *, control: str = "skin") -> DermisChange:
+def dermis_change(rig: Rig | None = None) -> DermisChange:
     """Play the cue and look at all depths down to 2 mm: how much, and how fast, the tissue cools there."""
-    rig = _rig(rig)
+    rig = rig or emulator_rig()
     depths = np.linspace(0.0, min(2.0e-3, rig.skin.thickness_m), 201)
-    run = probe_depths(cooling_step(control), rig, depths, tail_s=TAIL_S)
+    run = probe_depths(cooling_step("skin"), rig, depths, tail_s=TAIL_S)
     change = run.temperature_C[:, :1] - run.temperature_C.min(axis=1, keepdims=True)
     fall = -np.diff(run.temperature_C, axis=1).min(axis=1) / run.trace.time_s[1]
     return DermisChange(rig.name, depths, change[:, 0], fall, (rig.skin.cold_receptor_m, rig.skin.warm_receptor_m))
@@ -241,29 +174,14 @@ class MissByLimit:
     reached: tuple[bool, ...]
     shipped_A: float
 
-    def __repr__(self) -> str:
-        pairs = ", ".join(f"{miss:.2f} K at {limit:g} A" for limit, miss in zip(self.limit_A, self.miss_K, strict=True))
-        return f"MissByLimit({self.rig_name}; {pairs})"
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the miss against the limit, with the shipped limit and the module's own marked; returns the Axes."""
-        from .studydraw import plot_miss
-
-        return plot_miss(self, ax)
-
 
 LIMITS_A = (0.75, 1.0, 1.25, 1.5, 1.7, 1.85, 2.0, 2.2, 2.5)
 """Current limits from below the rig's own, by the module's 1.85 A, to those of `emulator_rig`."""
 
 
-def miss_by_limit(rig: Rig | None = None, limits_A: Sequence[float] = LIMITS_A) -> MissByLimit:
-    """Play the cue on the skin with several current limits of the driver; the paper prints none.
-
-    >>> miss_by_limit(limits_A=[1.5, 1.85])
-    MissByLimit(shani2021; 0.73 K at 1.5 A, 0.17 K at 1.85 A)
-    """
-    own_A = (Rig.load("shani2021") if rig is None else rig).driver.current_max_A
-    rig = _rig(rig)
+def miss_by_limit(limits_A: Sequence[float] = LIMITS_A) -> MissByLimit:
+    """Play the cue on the skin with several current limits of the driver; the paper prints none."""
+    own_A, rig = Rig.load("shani2021").driver.current_max_A, emulator_rig()
     outcomes = [simulate(cooling_step("skin"), rig.with_(**{"driver.current_limit_A": a})).outcome for a in limits_A]
     misses = [abs(outcome.largest_miss_K) for outcome in outcomes if outcome is not None]
     reached = tuple(outcome.reached for outcome in outcomes if outcome is not None)

@@ -43,11 +43,6 @@ class PaperDifference:
     ours: str
     why: str
 
-    def __str__(self) -> str:
-        return (
-            f"{self.topic} ({'agrees' if self.agrees else 'differs'}). Paper: {self.paper} Ours: {self.ours} {self.why}"
-        )
-
 
 def paper_differences() -> tuple[PaperDifference, ...]:
     """Simulate the paper's cue on its own rig (limits lifted) and on `thenar`, and report where we differ.
@@ -85,15 +80,11 @@ def paper_table() -> pd.DataFrame:
     """
     import pandas as pd
 
-    rows = [
-        (each.topic, "agrees" if each.agrees else "differs", *map(_sentence, (each.paper, each.ours, each.why)))
-        for each in paper_differences()
-    ]
+    rows = []
+    for each in paper_differences():
+        sentences = (text[:1].upper() + text[1:] for text in (each.paper, each.ours, each.why))
+        rows.append((each.topic, "agrees" if each.agrees else "differs", *sentences))
     return pd.DataFrame(rows, columns=["claim", "verdict", "paper", "ours", "why"])
-
-
-def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 def _shape(cue: ControlledCue) -> PaperDifference:
@@ -112,7 +103,7 @@ def _shape(cue: ControlledCue) -> PaperDifference:
 
 def _current(rig: Rig) -> PaperDifference:
     module_A = printed().one("module current").central
-    misses = miss_by_limit(rig, [rig.driver.current_max_A, module_A]).miss_K
+    misses = miss_by_limit([rig.driver.current_max_A, module_A]).miss_K
     return PaperDifference(
         "current",
         False,

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from textwrap import fill
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from thermicon.circuit.solver.draw import COOL, DISPLAY, LIMIT, PROBE, SKIN, TARGET, WARM, new_axes, tidy
+
+from .paper import printed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -76,8 +78,6 @@ def plot_thermistors(thermistors: Thermistors, ax: Axes | None = None) -> Axes:
 
 def plot_dermis(dermis: DermisChange, ax: Axes | None = None) -> Axes:
     """Draw largest change and fastest fall against depth on a logarithmic axis, with the paper's two numbers."""
-    from .paper import printed
-
     ax = new_axes(ax)
     depth = dermis.depth_m * 1e3
     change_K, rate = printed().one("dermis change").central, printed().one("dermis rate").central
@@ -112,8 +112,6 @@ def plot_dermis_course(course: DermisCourse, ax: Axes | None = None) -> Axes:
 
 def plot_miss(misses: MissByLimit, ax: Axes | None = None) -> Axes:
     """Draw the largest miss against the current limit; filled where the cue counts as reached."""
-    from .paper import printed
-
     ax = new_axes(ax)
     module_A = printed().one("module current").central
     ax.plot(misses.limit_A, misses.miss_K, color=COOL, lw=1.6)
@@ -129,11 +127,11 @@ def plot_miss(misses: MissByLimit, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def stacked_figure(*draw: Callable[[Axes], Axes]) -> Figure:
-    """Return a figure with one panel below the other, each drawn by a function that takes an Axes."""
+def stacked_figure(*drawn: tuple[Callable[[Any, Axes], Axes], Any]) -> Figure:
+    """Return a figure with one panel below the other: functions that draw, and what each draws."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7.4, 2.9 * len(draw)), layout="constrained")
-    for panel, plot in zip(np.atleast_1d(figure.subplots(len(draw), 1)), draw, strict=True):
-        plot(panel)
+    figure = Figure(figsize=(7.4, 2.9 * len(drawn)), layout="constrained")
+    for panel, (plot, data) in zip(np.atleast_1d(figure.subplots(len(drawn), 1)), drawn, strict=True):
+        plot(data, panel)
     return figure

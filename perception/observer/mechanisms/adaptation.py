@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...arrays import Array
-from ...kernels.parallel import as_rows, over_rows
+from ...arrays import Array, as_rows
+from ...kernels.parallel import over_rows
 from ..channels import Channel, sign_of
 from ..constants import Both, constant
 from .limits import Limits
@@ -35,11 +35,10 @@ class Adaptation(Limits):
         return self.neutral_flux.of(channel)
 
     def drive(self, received: ArrayLike, dt_s: float, channel: Channel) -> Array:
-        """Drive (never negative, in `drive_unit`) of one channel for what reaches its receptors.
+        """Drive (never negative, in `drive_unit`) of one channel for what reaches its receptors, of the same shape.
 
-        `received` has shape (..., n_time) on a uniform clock of `dt_s`: temperature in °C at the depth of the channel
-        or, as `variable` says, heat flow there in W/m² into the skin. The drive has the same shape. At the first sample
-        the receptor is adapted as far as the neutral zone allows.
+        `received` (..., n_time) is °C at the depth of the channel or, as `variable` says, W/m² into the skin there. At
+        the first sample the receptor is adapted as far as the neutral zone allows.
         """
         from ...kernels.kernels import adapted_drive
 

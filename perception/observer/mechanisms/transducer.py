@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...arrays import Array
-from ...kernels.parallel import as_rows, over_rows
+from ...arrays import Array, as_rows
+from ...kernels.parallel import over_rows
 from ..channels import Channel
 from ..constants import constant
 from .gain import Gain
@@ -61,9 +61,8 @@ class Transducer(Gain):
     ) -> Array:
         """Sensation ψ in d′ units, of shape (..., n_time) like the drive (in `drive_unit`).
 
-        `area_m2` is the area of contact (None: the reference area), `site` where on the body (None: the
-        thenar); `threshold` multiplies the thresholds of this person, age included, one number or one
-        for each leading index. It is written to `out`, which may be the drive, where that is given.
+        `area_m2` None is the reference area, `site` None the thenar; `threshold` multiplies those of this person, one
+        number or one for each leading index. It is written to `out`, which may be the drive.
         """
         from ...kernels import kernels
 

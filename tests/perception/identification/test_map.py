@@ -122,18 +122,3 @@ def test_the_first_icon_is_left_and_above() -> None:
         found = perceptual_map(random_distances(6, seed), list("abcdef"))
         assert found.points[0, 0] < 0 < found.points[0, 1]
         assert np.ptp(found.points[:, 0]) > 0.5 * np.ptp(found.points[:, 1])
-
-
-@pytest.mark.parametrize(
-    ("d_prime", "told"),
-    [
-        ([[0.0, 1.0]], "2 icons need a matrix of 2 × 2 distances"),
-        ([[0.0, np.nan], [np.nan, 0.0]], "must be finite and not negative"),
-        ([[0.0, -1.0], [-1.0, 0.0]], "must be finite and not negative"),
-        ([[0.0, 1.0], [2.0, 0.0]], "must be symmetric, and 0 between an icon and itself"),
-        ([[1.0, 1.0], [1.0, 0.0]], "must be symmetric, and 0 between an icon and itself"),
-    ],
-)
-def test_distances_that_are_none(d_prime: list[list[float]], told: str) -> None:
-    with pytest.raises(ValueError, match=told):
-        perceptual_map(d_prime, ["a", "b"])

@@ -88,7 +88,7 @@ def test_files_are_read_by_observer_and_draws(found: Observed[Answered, Fit], la
     assert draws.header.rig == "thenar" and draws.one_laboratory and not PosteriorDraws.load().one_laboratory
     assert "# effective draws: " in table and "# participants: 3\n" in table
     model, whole = ObserverModel.load(lab.with_suffix(".csv")), ObserverModel.load(lab)
-    assert model.nominal == whole.nominal == draws.nominal() == Observer.load(lab)
+    assert model.nominal == whole.nominal == draws.observer(0) == Observer.load(lab)
     for field in ("threshold_cold", "threshold_warm", "criterion_cold", "decision_s", "memory"):
         assert np.array_equal(getattr(model.people(9, 4), field), getattr(whole.people(9, 4), field)), field
 

@@ -45,13 +45,6 @@ def test_a_smooth_pulse_lies_on_its_curve() -> None:
     assert played.time_s[played.surface_C("display")[0].argmax()] == pytest.approx(3.0, abs=0.02)
 
 
-def test_messages(bench: Bench) -> None:
-    with pytest.raises(ValueError, match=r"a course of 3 s does not end by 2 s"):
-        bench.play([ramp("cold", 1.0, 1.0, 2.0)], 2.0)
-    with pytest.raises(ValueError, match=r"prescribed at skin or display, not at 'deep'"):
-        Bench(bench.rig, surface="deep")  # type: ignore[arg-type]
-
-
 @pytest.mark.parametrize(
     ("change", "rate", "said"),
     [
