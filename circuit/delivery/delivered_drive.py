@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
-from importlib import resources
 
 import numpy as np
 
 from thermicon.icons import Icon
 
-from ..records import Table, load_records
+from ..records import Table, shipped_records
 from ..rig.rig import Rig
 from ..solver.drive import Drive
 from ..solver.trace import Outcome, Trace
@@ -145,10 +143,9 @@ def delivery_deviation(designed: Trace, delivered: Trace) -> DeliveryDeviation:
     return DeliveryDeviation(tuple(deviations))
 
 
-@cache
 def loss_table() -> Table:
     """The stated losses, each with its source."""
-    return load_records(resources.files("thermicon.circuit") / "data" / "loss.toml")
+    return shipped_records("loss.toml")
 
 
 def loss_limit(quantity: str) -> float:

@@ -136,10 +136,6 @@ class Problem:
             for key, place in zip(self.keys, theta, strict=False)
         }
 
-    def rig_at(self, theta: Array) -> Rig:
-        """The rig at a point; raises RigError where no rig file may have these values."""
-        return self.rig.with_(**self.values(theta), **changed_layers(self.rig, self.factors(theta)))
-
     def factors(self, theta: Array) -> Factors:
         """Logarithms of what the layers of the skin are multiplied by; empty where they are not fitted along."""
         all_ = zip(self.unknowns, theta, strict=True)
@@ -152,7 +148,7 @@ class Problem:
         if token not in self._kept:
             if len(self._kept) > 4 * (len(moving) + 1):
                 self._kept.clear()
-            rig = self.rig_at(theta)
+            rig = self.rig.with_(**self.values(theta), **changed_layers(self.rig, self.factors(theta)))
             self._kept[token] = tuple(
                 predict(rig, run, self.nuisance(theta, "phase", r, 0)) for r, run in enumerate(self.runs)
             )

@@ -3,12 +3,10 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
-from importlib import resources
 
 from thermicon.icons.near_words import did_you_mean
 
-from ..records import Record, RecordError, Table, load_records
+from ..records import Record, RecordError, Table, shipped_records
 from .faults import PARAMETERS, Unusual, sentence, unusual
 from .module import Datasheet, Extraction, Peltier, at_mean_C
 from .rigfile import ModuleTable
@@ -39,10 +37,9 @@ class ModuleOrigin:
     warnings: tuple[Unusual, ...] = ()
 
 
-@cache
 def module_table() -> Table:
     """The shipped modules as sourced records, one for each data sheet."""
-    return load_records(resources.files("thermicon.circuit") / "data" / "modules.toml", extra=COLUMNS)
+    return shipped_records("modules.toml", *COLUMNS)
 
 
 def module_names() -> tuple[str, ...]:

@@ -6,12 +6,11 @@ import json
 import textwrap
 from collections.abc import Iterator
 from functools import lru_cache
-from importlib import resources
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import signed
 
-from ..records import load_records
+from ..records import shipped_records
 from .faults import Unusual, unit_of, unusual
 from .modules import build_of, module_names
 from .rigfile import Thermode
@@ -80,7 +79,7 @@ def _rows(rig: Rig) -> list[tuple[str, str]]:
 
 def _resistance(contact: Contact) -> str:
     """The resistance of a contact, and what those of its kind have."""
-    for record in load_records(resources.files("thermicon.circuit") / "data" / "contacts.toml"):
+    for record in shipped_records("contacts.toml"):
         low, high = record.interval
         if low <= contact.resistance_m2K_per_W <= high:
             return f", {contact.resistance_m2K_per_W:g} m²K/W ({record.method}: {low:g} to {high:g})"

@@ -267,8 +267,7 @@ class SkinModes:
     def display_holding_skin_C(self, skin_C: float) -> float:
         """Temperature of the display in °C that holds the face of the skin at one in steady state."""
         row = FELT.index("skin_C")
-        per_K = float(self.reading[row] @ (self.drive_per_s / self.rate_per_s) + self.direct[row])
-        return self.deep_C + (skin_C - float(self.offset_C[row])) / per_K
+        return self.deep_C + (skin_C - float(self.offset_C[row])) / self.per_K(row)
 
 
 @lru_cache(maxsize=256)

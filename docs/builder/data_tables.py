@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from thermicon.circuit.records import Record
+from thermicon.circuit.records import Record, shipped_records
 from thermicon.circuit.rig.rules import limit_table
-from thermicon.circuit.rig.uncertainty import uncertainty_table
 from thermicon.icons.files.catalogue import catalogue
 from thermicon.icons.number_text import signed
 
@@ -55,7 +54,7 @@ def uncertainties_table() -> str:
     """A row for each shipped uncertainty of a rig."""
     rows = [
         f"| `{one.quantity}` | ±{one.central:g}{'' if one.unit == '1' else f' {one.unit}'} | {one.source} |"
-        for one in uncertainty_table()
+        for one in shipped_records("uncertainty.toml")
     ]
     return "\n".join(["| `[uncertainty]` | shipped | source |", "|---|---|---|", *rows])
 

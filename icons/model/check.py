@@ -76,11 +76,6 @@ def corner_count(body: Sequence[Statement | Broken], known: dict[int, int] | Non
     return count
 
 
-def problems(body: Sequence[Statement | Broken], control: Control, rest: Fraction | None) -> list[Problem]:
-    """Return the problems of a body that starts at the level ``rest`` (°C or A; None when that is not known)."""
-    return survey(body, control, rest).problems
-
-
 def survey(
     body: Sequence[Statement | Broken], control: Control, rest: Fraction | None, played: Played | None = None
 ) -> Survey:
