@@ -146,10 +146,7 @@ class Table:
 
 
 def load_records(path: Path | Traversable | str, *, extra: Iterable[str] = ()) -> Table:
-    """Read a TOML table of records; `extra` names the further columns that it may have, any other key is an error.
-
-    Raises RecordError, which names file, entry and cure.
-    """
+    """Read a TOML table of records with `extra` columns; RecordError names file, entry and cure."""
     file = Path(path) if isinstance(path, str) else path
     what = "table of records"
     text = read_text(file, what, MOST_MB, RecordError) if isinstance(file, Path) else file.read_text(encoding="utf-8")

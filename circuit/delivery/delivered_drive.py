@@ -19,10 +19,7 @@ from .setpoints import Setpoints
 
 @dataclass(frozen=True, slots=True)
 class Narrowed:
-    """A device whose range is too small for a design: a sentence, the most it plays in A, and the resulting outcome.
-
-    `outcome` is that of the best design within the range; None where the cue prescribes current.
-    """
+    """A range too small for a design: a sentence, the most it plays in A, and the outcome of the best within it."""
 
     text: str
     most_A: float
@@ -79,10 +76,7 @@ class DeliveredDrive:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class ModuleDrive(DeliveredDrive):
-    """What the rig's module gets: the currents as `designed` and `delivered`.
-
-    `played` is the best design within the range of the device, `narrowed` what was changed where that is too small.
-    """
+    """The currents as `designed` and `delivered`; `narrowed`: what was changed for a range that is too small."""
 
     played: Samples
     designed: Drive
@@ -92,10 +86,7 @@ class ModuleDrive(DeliveredDrive):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class ThermodeDrive(DeliveredDrive):
-    """What a thermode shows, whose current is not known.
-
-    `prompt_trace` is the delivery without its lag: a constant lag is a delay and not a loss.
-    """
+    """What a thermode shows; `prompt_trace` is without its lag, since a constant lag is a delay and not a loss."""
 
     played: Setpoints
     prompt_trace: Trace

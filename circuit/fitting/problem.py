@@ -194,10 +194,7 @@ class Problem:
         return [(r, c, channel) for r, run in enumerate(self.runs) for c, channel in enumerate(run.channels)]
 
     def residuals(self, theta: Array, sigma: Sequence[float]) -> Array:
-        """Simulated minus measured of all channels, then what is fitted along, in SDs of the noise and of the priors.
-
-        Rows outside their run are 0.
-        """
+        """Simulated minus measured, 0 outside of runs, then what is fitted along, in SDs of noise and priors."""
         found = self.predictions(theta)
         if found is None:
             count = sum(len(channel.values) for _, _, channel in self.channels())
@@ -210,10 +207,7 @@ class Problem:
         return np.concatenate([*self._independent(parts, tuple(sigma)), np.array(prior)])
 
     def _independent(self, parts: Sequence[Array], sigma: tuple[float, ...]) -> list[Array]:
-        """Differences of each channel in SDs of its noise; where the drive is not known between rows, made independent.
-
-        How rows err alike is that of the rig to begin with.
-        """
+        """Differences in SDs of their noise, made independent where the drive is unknown between rows."""
         if not self._shared:
             for r, run in enumerate(self.runs):
                 times = [self.run_time_s(self.first, r, channel) for channel in run.channels]

@@ -25,10 +25,8 @@ def perturbed(
 ) -> Rig:
     """Return a rig whose numbers deviate from those of its file, beyond whose bounds they may lie.
 
-    Shares (−0.3 is 30 % less) of contact resistance, Seebeck coefficient, thermal conductance of the module (its
-    resistance goes the other way) and heat capacities of the plates; K of the room air, and of the heat sink, its
-    set point, or a passive sink and its air. Bare skin rests as given; blood is solved again where the rig solves it.
-    Raises RigError for what is physically impossible.
+    Shares (−0.3 is 30 % less), the resistance of the module against its conductance, and K; a passive sink has its air
+    with it. Bare skin rests as given; blood is solved again where the rig solves it.
     """
     shares = {
         "contact resistance": contact_resistance_relative,

@@ -80,11 +80,7 @@ def _records(name: str) -> list[Record]:
 
 
 def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> tuple[Peltier, ModuleOrigin]:
-    """Return the module of a rig file and its origin; ValueError where its figures are impossible.
-
-    `mean_C` is the mean module temperature, where two sheets are interpolated: that of heat sink and resting skin.
-    `source` is what the rig's own `[source]` says of its module.
-    """
+    """The module of a rig file at a mean temperature, and its origin; ValueError where its figures are impossible."""
     plates = (table.hot_plate_J_per_K, table.cold_plate_J_per_K)
     if table.name is None and table.datasheet is None:
         alpha, ohm, theta = (float(getattr(table, key)) for key in PARAMETERS)

@@ -40,11 +40,7 @@ HIGH_RESTING_FLUX_W_PER_M2 = 150.0
 
 
 def rig_summary(rig: Rig, for_methods: bool = False) -> str:
-    """Return title, site, rest, receptor depths in both conventions, module, warnings and notes, as lines of text.
-
-    A methods section has the driver in place of warnings and notes; it leaves out a title where the module has a name,
-    since it may describe the module that was there before.
-    """
+    """What to know of a rig, as lines; a methods section has its driver, but no title that may be out of date."""
     rows = _rows(rig)
     named = for_methods and "name" in json.loads(rig.document).get("module", {})
     if not for_methods:

@@ -131,10 +131,7 @@ class ContactTable(KeyTable):
 
 
 class Controller(KeyTable):
-    """A PID loop on a display thermistor, sampled at the driver's update rate; positive current cools.
-
-    Thermistor lag s, gains A/K, A/(K·s), A·s/K; the derivative acts on the measured temperature.
-    """
+    """A PID loop on the display: thermistor lag s, gains A/K, A/(K·s), and A·s/K on the measured temperature."""
 
     lag_s: Lag = 0.0
     kp_A_per_K: Gain

@@ -156,8 +156,7 @@ class Tally:
     def add(self, time_s: Array, watched: Array, *, rates: bool = True, sums: bool = True, drift: bool = False) -> None:
         """Add WATCHED (4, lanes, rows) in °C at times in s (rows,), which continue those before.
 
-        Without `rates` no rate is taken over these rows, and without `sums` nothing is summed over them, since they are
-        states far apart. A `drift` is not a stimulus: only hard limits apply, and changes do not count.
+        Without `rates` or `sums`, rows are too far apart for them; in a `drift`, no stimulus, only hard limits apply.
         """
         from .tally_kernel import count
 

@@ -61,9 +61,7 @@ def _column(network: Network) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=512)
 def state_under_current(network: Network, current_A: float, in_the_end: bool = False) -> Array:
-    """Steady state (nodes,) in °C, read-only, under a constant current; ArithmeticError where it would heat without
-    limit.
-    """
+    """Steady state (nodes,) in °C, read-only, under a current; ArithmeticError where it would heat without limit."""
     plates, (z, e) = _plates(network, in_the_end), _column(network)
     cold, hot = _balance(plates, current_A, float(network.conductance_W_per_K[0]), z[0], e[0])
     state = np.empty(network.nodes)
@@ -156,10 +154,7 @@ def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
 
 
 def steady_of(rig: Rig, duty: float, peak_A: float) -> Array:
-    """Return the steady state in °C of a constant duty, without the ripple.
-
-    The mean current is D·Ip and the mean of its square 1/D times the square of that, as if the resistance were R/D.
-    """
+    """Steady state in °C of a duty D without ripple: the mean square of the current is D·Ip², as if R were R/D."""
     network = network_of(rig)
     if duty == 0:
         return state_under_current(network, 0.0)

@@ -59,10 +59,8 @@ def superposed(
     bank: Bank, display_C: Array, corners: tuple[Index, Array], states: Array, probes: Sequence[str], period_s: float,
     rows_s: Array,
 ) -> tuple[Array, npt.NDArray[np.bool_]]:  # fmt: skip
-    """Readings (readings, lanes, rows) of rigs under displays (cues, periods + 1), all cues of a rig side by side; and
-    whether each lane (lanes,) is far from every limit.
-
-    `states` (rigs · cues, nodes) are the steady ones at the start; rows (rows,) in s lie at ends of periods.
+    """Readings (readings, lanes, rows) of rigs under displays (cues, periods + 1) from steady states, rig by rig;
+    and whether each lane (lanes,) is far from every limit.
     """
     from . import kernel_modes as kernel
 

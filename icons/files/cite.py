@@ -31,10 +31,7 @@ Source = tuple[str | None, str | None]
 
 
 def methods(icons: IconSet, rig_about: str | None = None) -> str:
-    """Return a paragraph for the methods section of a paper: the set, every icon, and the sources.
-
-    ``rig_about`` describes the rig, as ``Rig.about`` does; None: no rig is described.
-    """
+    """Return a paragraph for the methods of a paper: the set, every icon, the sources, and the rig by ``Rig.about``."""
     many, control = len(icons) > 1, icons.context.control
     title = f" of the set “{icons.title}”" if icons.title else ""
     count = counted(len(icons), "thermal icon")
@@ -131,11 +128,7 @@ def sources(icons: IconSet) -> tuple[Source, ...]:
 
 
 def cited(icons: IconSet) -> list[Reference]:
-    """Return the publications of the bibliography that a set cites.
-
-    A DOI names a publication; so do the first author's last name and a year in ``by``, or, without a year, the first
-    two last names.
-    """
+    """Publications that a set cites: by a DOI, or in ``by`` a first name with a year, or two first last names."""
     found: dict[str, Reference] = {}
     for by, doi in sources(icons):
         if doi is not None:
