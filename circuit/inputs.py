@@ -65,9 +65,7 @@ def quoted(value: object) -> str:
 
 
 def read_text(path: Path, what: str, limit_MB: float, error: type[Exception] = InputError) -> str:
-    """The text of a file of a kind `what` ("rig file"), of at most `limit_MB`; raises `error`, which says what is
-    wrong.
-    """
+    """The text of a file of a kind `what` ("rig file"), of at most `limit_MB`; raises `error` with what is wrong."""
     data = read_bytes(path, what, limit_MB, error)
     if not data.strip():
         raise error(f"{path}: the file is empty; a {what} was expected")
@@ -123,12 +121,9 @@ def require_pyarrow(path: str | Path, error: type[Exception] = InputError) -> No
 def read_toml(
     text: str, where: str, what: str, own: Sequence[str], error: type[Exception] = InputError
 ) -> dict[str, Any]:
-    """The TOML text of a kind `what` ("rig file") as a dictionary; raises `error`, which says which line is wrong.
+    """The TOML text of a kind `what` ("rig file") as a dictionary; raises `error` with the line that is wrong.
 
-    Without a key of its `own` it may be a file of another kind, which is then said.
-
-    So are tables nested more deeply than Python's reader can follow, and whole numbers beyond 64 bits, TOML's own
-    range.
+    That is also for another kind of file, without a key of its `own`, deep nesting, and numbers beyond 64 bits.
     """
     import tomllib
 
@@ -189,11 +184,7 @@ def key_faults(
     unit_of: Callable[[str], str] = lambda key: "",
     shape_of: Callable[[str], str] = lambda key: "must be spelled otherwise",
 ) -> list[str]:
-    """Every fault that a table found in its keys, a sentence each.
-
-    `unknown` says what the key at a place may have been meant to be, `unit_of` has the unit of a dotted key, `shape_of`
-    what a text must look like.
-    """
+    """Every fault of a table's keys, by what an `unknown` key may be, the unit of each, and the shape of a text."""
     faults = [_in_words(error, unknown, unit_of, shape_of) for error in problem.errors(include_url=False)]
     return [line for fault in faults for line in fault.splitlines()]
 

@@ -4,9 +4,12 @@ A table is a TOML file with one `[[record]]` block for each number, which states
 or an interval, and the conditions under which it holds.
 """
 
+import json
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
+from functools import cache
+from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
@@ -97,11 +100,6 @@ class Table:
 
     name: str
     records: tuple[Record, ...]
-    _by_quantity: dict[str, list[Record]] = field(init=False, repr=False, compare=False, default_factory=dict)
-
-    def __post_init__(self) -> None:
-        for record in self.records:
-            self._by_quantity.setdefault(record.quantity, []).append(record)
 
     def __iter__(self) -> Iterator[Record]:
         return iter(self.records)
@@ -118,9 +116,10 @@ class Table:
         method: str = "",
     ) -> tuple[Record, ...]:
         """All records that match every key given; a channel also matches records for both channels."""
-        records = self._by_quantity.get(quantity, [])
+        records = [record for record in self.records if record.quantity == quantity]
         if not records:
-            near = "".join(f"; it has {each!r}" for each in nearest_words(quantity, self._by_quantity, cutoff=0.8))
+            known = dict.fromkeys(record.quantity for record in self.records)
+            near = "".join(f"; it has {each!r}" for each in nearest_words(quantity, known, cutoff=0.8))
             raise RecordError(f"{self.name}: no quantity {quantity!r}{near}")
         for key, value in {"channel": channel, "site": site, "method": method}.items():
             if not value:
@@ -147,10 +146,7 @@ class Table:
 
 
 def load_records(path: Path | Traversable | str, *, extra: Iterable[str] = ()) -> Table:
-    """Read a TOML table of records; `extra` names the further columns that it may have, any other key is an error.
-
-    Raises RecordError, which names file, entry and cure.
-    """
+    """Read a TOML table of records with `extra` columns; RecordError names file, entry and cure."""
     file = Path(path) if isinstance(path, str) else path
     what = "table of records"
     text = read_text(file, what, MOST_MB, RecordError) if isinstance(file, Path) else file.read_text(encoding="utf-8")
@@ -161,6 +157,12 @@ def load_records(path: Path | Traversable | str, *, extra: Iterable[str] = ()) -
     return Table(file.name, tuple(_record(file.name, i, entry, declared) for i, entry in enumerate(tree["record"], 1)))
 
 
+@cache
+def shipped_records(name: str, *extra: str) -> Table:
+    """A table of `circuit/data` by its name; `extra` as in `load_records`."""
+    return load_records(resources.files("thermicon.circuit") / "data" / name, extra=extra)
+
+
 def dump_records(table: Table, *, comment: str = "") -> str:
     """TOML text that `load_records` reads back; `comment` heads the file."""
     lines = [f"# {line}".rstrip() for line in comment.splitlines()]
@@ -169,8 +171,8 @@ def dump_records(table: Table, *, comment: str = "") -> str:
         for column in fields(record):
             value = getattr(record, column.name)
             if column.name != "extra" and value not in (None, ""):
-                lines.append(f"{column.name} = {_toml(value)}")
-        lines += [f"{key} = {_toml(value)}" for key, value in record.extra]
+                lines.append(f"{column.name} = {json.dumps(value, ensure_ascii=False)}")
+        lines += [f"{key} = {json.dumps(value, ensure_ascii=False)}" for key, value in record.extra]
     return "\n".join(lines).lstrip("\n") + "\n"
 
 
@@ -199,10 +201,3 @@ def _record(file: str, index: int, entry: object, declared: tuple[str, ...]) -> 
         return Record(**given, extra=tuple(further))
     except RecordError as problem:
         raise RecordError(f"{place}: {problem}") from None
-
-
-def _toml(value: Plain) -> str:
-    if isinstance(value, str):
-        escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
-        return f'"{escaped}"'
-    return repr(value)

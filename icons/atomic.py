@@ -28,10 +28,7 @@ class OutputError(Exception):
 
 @contextmanager
 def complete_or_absent(path: Path, mode: int = 0o666) -> Iterator[Path]:
-    """A temporary name beside ``path`` to write to; it takes the place of ``path`` only when the block succeeds.
-
-    ``mode`` is what a new file allows, less the user's mask. Raises OutputError where the file cannot be written.
-    """
+    """A temporary name beside ``path``, whose place it takes when the block succeeds; OutputError where it cannot."""
     goal = path.resolve()
     if goal.exists() and not goal.is_file():
         yield goal  # a pipe or a device: nothing to replace

@@ -70,10 +70,7 @@ class AnyLoop:
         return replace(self.bank, plates=plates)
 
     def limits_A(self, cut: CutOff, plays: Sequence[Samples]) -> tuple[Limits_A, tuple[Check, ...]]:
-        """The widest current limits within the driver's at which no loop moves skin or heats a plate too much.
-
-        Where the set-points need more than these, the checks, which are returned too, are those of the driver's limits.
-        """
+        """The widest current limits at which no loop moves skin too fast, or the driver's where needed, and checks."""
         driver = self.module.ensemble.rig.driver
         given = limits = driver.current_min_A, driver.current_max_A
         cold, warm = (self._held_at(level) for level in (cut.low - SENSOR_K, cut.high + SENSOR_K))
@@ -122,9 +119,8 @@ class AnyLoop:
         return tuple(check for check in tally.checks() if check.quantity == "rate of skin temperature")
 
     def _at_limit(self, cut: CutOff, warm: State, limit_A: float) -> tuple[Check, ...]:
-        """The hot plate of a driver stuck at its limit, from nodes as `warm` as in any display held inside the cut-offs
-        until the lower has acted; and a loop that stays there for good, which may warm the display no farther than it
-        gets without a fault.
+        """The hot plate of a driver stuck at its limit, from nodes as `warm` as in any display inside the cut-offs;
+        and where a loop that stays there for good takes the display.
         """
         ensemble, amperes = self.module.ensemble, signed(limit_A, "g")
         values, _ = ensemble.hold(limit_A, warm, HANG_ROWS_S)
@@ -151,10 +147,8 @@ class AnyLoop:
     def cut_off(
         self, reach_C: tuple[float, float], limits_A: Limits_A, used_A: Limits_A
     ) -> tuple[CutOff, Limits_A, tuple[Check, ...]]:
-        """The slowest cut-off around what the display reaches without a fault that holds every temperature.
-
-        For it the current limits may come down half-way to what is used in some corner. With the hard rules of
-        temperature.
+        """The slowest cut-off around what the display reaches that holds every temperature; current limits may come
+        down half-way to what is used.
         """
         hard = [rule for rule in self.module.ensemble.rig.limits.rules if rule.severity == "hard"]
         ends = {rule.upper: rule.limit for rule in hard if rule.quantity == "display" and rule.above_C is None}

@@ -43,10 +43,7 @@ SETTLING_S, SWING_K = 10.0, 0.2
 
 
 def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> tuple[Gate, ...]:
-    """Check the set-points of cues that may be played repeatedly in any order by a controller around the rig's module.
-
-    Raises PauseError for an impossible pause, and RigError where the module cannot be at rest.
-    """
+    """Check set-points that a controller around the rig's module may play in any order; PauseError, RigError."""
     rig, stuck_C = deliveries[0].rig, deliveries[0].device.interval("set-point range")
     verdicts = gate_shown(
         [(_beside(delivery, BESIDE_K), _beside(delivery, -BESIDE_K)) for delivery in deliveries],
@@ -103,9 +100,8 @@ def _demands(
     unpowered_C: tuple[float, float],
     proven: tuple[Loop, Limits_A, CutOff],
 ) -> Demands:
-    """What set-points demand, and what a loop that loses its sensor or has its poles swapped does to the module.
-
-    The cut-off leaves room for the display without power: a player starts from there, and returns there after a stop.
+    """What set-points demand, and a loop that loses its sensor or has its poles swapped; the cut-off leaves room for
+    a start without power.
     """
     loop, limits_A, cut = proven
     rest_s = _rest_s(under, delivery, unpowered_C)

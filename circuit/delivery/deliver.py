@@ -122,10 +122,7 @@ def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design)
 
 
 def deliver_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float) -> ThermodeDrive:
-    """Return a cue as a thermode delivers it; its clock begins with the start command.
-
-    Raises DeviceError where the cue prescribes a current, or set-points that the thermode cannot take.
-    """
+    """Return a cue as a thermode delivers it, from the start command on; DeviceError for what it cannot take."""
     if icon.context.control == "current":
         raise DeviceError(
             f"{device.name} is a thermode: it takes temperatures, and {icon.name} prescribes a current; use control "
@@ -173,10 +170,7 @@ def traces_of_setpoints(
 
 
 def display_for(icon: Icon, rig: Rig, device: Device, base_C: float, end_s: float) -> tuple[Array, Array]:
-    """Return times in s and the display in °C that takes the skin along a cue, within a device's range and ramp rate.
-
-    Resolution and lag are left out.
-    """
+    """Times in s and the display in °C that takes the skin along a cue, within a device's range and ramp rate."""
     modes, step = modes_of(rig), part_of(device.most("tick"))
     times: Array = np.arange(math.ceil(end_s / step - 1e-9) + 1, dtype=np.float64) * step
     start = modes.display_holding_skin_C(base_C)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
-from importlib import resources
 
 import numpy as np
 
 from thermicon.icons import Icon
 
-from ..records import Table, load_records
+from ..records import Table, shipped_records
 from ..rig.rig import Rig
 from ..solver.drive import Drive
 from ..solver.trace import Outcome, Trace
@@ -21,10 +19,7 @@ from .setpoints import Setpoints
 
 @dataclass(frozen=True, slots=True)
 class Narrowed:
-    """A device whose range is too small for a design: a sentence, the most it plays in A, and the resulting outcome.
-
-    `outcome` is that of the best design within the range; None where the cue prescribes current.
-    """
+    """A range too small for a design: a sentence, the most it plays in A, and the outcome of the best within it."""
 
     text: str
     most_A: float
@@ -81,10 +76,7 @@ class DeliveredDrive:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class ModuleDrive(DeliveredDrive):
-    """What the rig's module gets: the currents as `designed` and `delivered`.
-
-    `played` is the best design within the range of the device, `narrowed` what was changed where that is too small.
-    """
+    """The currents as `designed` and `delivered`; `narrowed`: what was changed for a range that is too small."""
 
     played: Samples
     designed: Drive
@@ -94,10 +86,7 @@ class ModuleDrive(DeliveredDrive):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class ThermodeDrive(DeliveredDrive):
-    """What a thermode shows, whose current is not known.
-
-    `prompt_trace` is the delivery without its lag: a constant lag is a delay and not a loss.
-    """
+    """What a thermode shows; `prompt_trace` is without its lag, since a constant lag is a delay and not a loss."""
 
     played: Setpoints
     prompt_trace: Trace
@@ -145,10 +134,9 @@ def delivery_deviation(designed: Trace, delivered: Trace) -> DeliveryDeviation:
     return DeliveryDeviation(tuple(deviations))
 
 
-@cache
 def loss_table() -> Table:
     """The stated losses, each with its source."""
-    return load_records(resources.files("thermicon.circuit") / "data" / "loss.toml")
+    return shipped_records("loss.toml")
 
 
 def loss_limit(quantity: str) -> float:

@@ -21,10 +21,7 @@ STEPS = 14
 
 @dataclass(frozen=True, slots=True)
 class Nearest:
-    """A reachable cue: the cue with its ramps `slower` times as slow, or its changes `smaller` times as large.
-
-    One of the two is 1; of the two ways, the one with the smaller ratio is chosen.
-    """
+    """A reachable cue, its ramps `slower` times as slow or its changes `smaller` times as large."""
 
     icon: Icon
     slower: float
@@ -85,10 +82,7 @@ def nearest_reachable(icon: Icon, rig: AnyRig = None) -> Nearest | None:
 
 
 def changed(icon: Icon, base_C: float, *, slower: float = 1.0, smaller: float = 1.0) -> Icon:
-    """Return the cue with ramps that take `slower` times as long and changes `smaller` times as large.
-
-    With `smaller`, a ramp keeps its duration, so that its rate shrinks as its change does.
-    """
+    """The cue with ramps `slower` times as long, and changes `smaller` times as large in the same time."""
 
     def all_of(body: Sequence[Statement | Broken]) -> tuple[Statement, ...]:
         # A total is what the cue was meant to last: slower, it would only be in the way.

@@ -59,10 +59,9 @@ class Samples:
 
 
 def rate_of(device: Device, requested_Hz: float, length_s: float) -> float:
-    """Return the rate in Hz nearest to the requested one at which a device can play a drive of a length in s.
+    """The rate in Hz nearest to the requested one that a device plays: every k-th update, each repeated, or cycles.
 
-    A slower device plays every k-th update, a faster one repeats each, and a bridge plays whole cycles. A device with a
-    shorter buffer plays fewer samples. Raises DeviceError where it then falls below its slowest rate.
+    A shorter buffer means fewer samples; DeviceError where that falls below the slowest rate.
     """
     carrier = 0.0
     if device.kind.switches:
@@ -101,11 +100,9 @@ def _check_count(device: Device, what: str, count: int) -> None:
 def sample(
     device: Device, rig: Rig, designed: Drive, rate_Hz: float, plates: tuple[Array, Array, Array]
 ) -> tuple[Samples, tuple[str, ...]]:
-    """Return the codes of a designed drive, and sentences on what the device cannot deliver.
+    """Codes of a designed drive, by its mean over each period within a device's limits, and what these hold back.
 
-    Each sample is the mean of the designed current over its period, so that no charge is lost, limited by the device's
-    slew rate and range, rounded to the nearest code. `plates`, for a bridge: times in s, display temperature in °C of
-    the design, and how many K hotter than in the design the hot plate is.
+    `plates`, for a bridge: times in s, designed display in °C, and how many K hotter than designed the hot plate is.
     """
     buffer = device.record("buffer length")
     least = 0 if buffer is None or buffer.low is None else round(buffer.low) - 1

@@ -59,11 +59,7 @@ class Setpoints:
 
 
 def closed(device: Device, setpoints: Setpoints) -> Setpoints:
-    """Return set-points that end at their baseline, with a ramp back added where needed.
-
-    The next play begins at the baseline, to which the device would otherwise jump. Raises DeviceError where the device
-    has too few segments.
-    """
+    """Set-points with a ramp back to the baseline, where the next play begins; DeviceError for too many segments."""
     last = setpoints.segments[-1][1]
     away_K = abs(last - setpoints.baseline) * setpoints.step_K
     ticks = math.ceil(away_K / min(CLOSING_K_PER_S, device.most("ramp rate")) / setpoints.tick_s - 1e-9)
@@ -81,10 +77,9 @@ def closed(device: Device, setpoints: Setpoints) -> Setpoints:
 
 
 def setpoints_of(device: Device, time_s: Array, level_C: Array, curve: bool) -> Setpoints:
-    """Return the segments by which a device follows a line through corners: times in s, levels in °C.
+    """Segments of a line through corners; a `curve` is simplified to within half a step, or as coarsely as is needed.
 
-    A `curve` (many corners, not exact) is first simplified to within half a step of temperature, or more coarsely
-    where that needs too many. Raises DeviceError where baseline, level or number of segments is beyond the device.
+    Raises DeviceError where baseline, level or number of segments is beyond the device.
     """
     step, tick = device.most("set-point step"), device.most("tick")
     check_level("baseline", float(level_C[0]), device.interval("baseline range"), device)
@@ -113,11 +108,9 @@ def lag_of(device: Device) -> float:
 def display_of(
     setpoints: Setpoints, device: Device, *, lagged: bool, end_s: float | None = None
 ) -> tuple[float, Array]:
-    """Return a step in s and the display (rows,) in °C at every step from 0 to the end of set-points, or to `end_s`.
+    """A step in s, a whole part of the tick, and the display (rows,) in °C at every step until `end_s`.
 
-    The step is the tick or a whole fraction of it, and the set-points are linear from tick to tick; the last is held.
-    The device's ramp rate limits the display. `lagged` adds its lag (first order, from rest); without it
-    the display is as fast as the device can make it, which is the worse case for the skin.
+    The ramp rate limits it; without `lagged` it is as fast as the device can make it, which is worse for the skin.
     """
     step = part_of(setpoints.tick_s)
     end = float(setpoints.time_s[-1]) if end_s is None else end_s

@@ -57,10 +57,7 @@ def looped(rig: Rig) -> Rig:
 def regulated(
     rig: Rig, bank: Bank, goals_C: Array, rest: tuple[float, Array], gain: float = 1.0
 ) -> tuple[Array, Array, Index]:
-    """Current A, display °C at the end, and code of its limit for each update, by the loop of a rig with set-points.
-
-    `bank` has the module, of which the first is taken, `rest` current and state before, and `gain` the current source.
-    """
+    """Current A, display °C and code of the limit of each update, by a rig's loop on the first of `bank`."""
     lane, gains = np.zeros(1, dtype=np.int64), np.array([gains_of(rig)])
     gains[:, [KP, KI, KD]] *= gain
     period, bias = 1.0 / rig.driver.update_Hz, np.array([rest[0]])
@@ -76,10 +73,7 @@ def places_of(samples: Samples, period_s: float) -> Index:
 
 
 def shaped(rig: Rig, samples: Samples, time_s: Array, display_C: Array) -> Samples:
-    """The set-points after which the display, by the loop of `looped`, is nearest to a designed one at times in s.
-
-    Where the driver is at its limit nothing is corrected. The first and last set-point, the rest, stay as they are.
-    """
+    """The set-points after which the display, by the loop of `looped`, is nearest to a designed one; rests stay."""
     loop, period, scale = looped(rig), 1.0 / rig.driver.update_Hz, samples.scale
     rest, end_s = steady_state(rig, "display", float(samples.command[0])), float(samples.time_s[-1])
     place = np.minimum(places_of(samples.until(end_s + AHEAD_S), period), len(samples.codes) - 1)

@@ -41,10 +41,7 @@ from .shaped import looped, places_of, regulated, shaped
 
 
 def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float) -> ModuleDrive:
-    """Return a cue as a controller around the rig's module delivers it.
-
-    Raises DeviceError where the cue prescribes a current, or a temperature beyond the controller.
-    """
+    """Return a cue as a controller around the rig's module delivers it; DeviceError for what that cannot take."""
     if icon.context.control == "current":
         raise DeviceError(
             f"{device.name} takes temperatures, and {icon.name} prescribes a current; use control display or control "
@@ -67,11 +64,9 @@ def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float) ->
 
 
 def follow_samples(rig: Rig, samples: Samples, *, to_the_limit: bool = False, gain: float = 1.0) -> Drive:
-    """Return the current by which the rig's display follows held set-points, by its own loop or at the driver's best.
+    """The current by which the display follows held set-points and ends at rest; RigError without a steady state.
 
-    It ends with the set-points, in a row of the current that holds the rest. `to_the_limit`: where the module cannot
-    reach a set-point, even the first, the current goes to the driver's limit, past the most cooling, as in a real loop.
-    `gain` is that of the current source, which a loop's gains have too. Raises RigError without a steady state.
+    `to_the_limit`: a set-point out of reach takes the current to the driver's limit, past the most cooling.
     """
     first = float(samples.command[0])
     rest, state = rest_of_a_loop(rig, first) if to_the_limit else steady_state(rig, "display", first)
@@ -92,10 +87,7 @@ def updates_of(samples: Samples, period_s: float) -> Array:
 
 
 def rest_of_a_loop(rig: Rig, level_C: float) -> tuple[float, Array]:
-    """The current in A by which a loop holds a level, or to which it runs where it cannot, and the steady state there.
-
-    Where there is none, since the module would heat without limit, the one of the most cooling.
-    """
+    """Current in A by which a loop holds a level, or to which it runs, or of the most cooling; and the steady state."""
     with suppress(RigError):
         return steady_state(rig, "display", level_C)
     network, driver = network_of(rig), rig.driver

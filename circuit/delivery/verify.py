@@ -44,10 +44,7 @@ class Verification:
 
 
 def verify(files: Mapping[str, bytes]) -> Verification:
-    """Return what does and does not belong together among the files of a folder, by their names.
-
-    Another version or code of the program is reported but is not wrong, since its drives stay valid.
-    """
+    """What does not belong together among files by name; another version of the program is told, and not wrong."""
     tables = {name: table_of(content) for name, content in sorted(files.items()) if name.endswith(".json")}
     claims = {name: each for name in tables if (each := claims_of(files[name])) is not None}
     bound = {name: each.digests for name, each in claims.items()}

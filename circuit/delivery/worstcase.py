@@ -60,10 +60,7 @@ class OpenLoopSpread:
 
 
 def open_loop_spread(delivery: DeliveredDrive) -> OpenLoopSpread | None:
-    """Return the spread of a drive over the corners of the rig's uncertainty; None where a loop follows set-points.
-
-    A corner without a steady state, or one that diverges, is left to the gate.
-    """
+    """The spread of a drive over a rig's corners, but for those that diverge; None where a loop follows set-points."""
     device = delivery.device
     if device.kind.regulated or not isinstance(delivery, ModuleDrive):
         return None

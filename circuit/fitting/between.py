@@ -54,8 +54,7 @@ def unknown_display(display_C: Array) -> Array:
 def one_phase(time_s: Array, current: Array, display_C: Array) -> Array:
     """What (rows,) a current is wrong by, as one SD, if a loop was always read at one phase of its steps.
 
-    A loop whose set-points are held answers each step with the same course, as large as the step. Steps are what the
-    display moves by, the greatest of them half of the greatest difference between neighbouring readings.
+    A step's course is as large as the step: the display's rate, against half of the greatest jump of readings.
     """
     there = np.isfinite(display_C)
     rows = np.interp(time_s, time_s[there], display_C[there])

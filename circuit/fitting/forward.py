@@ -41,11 +41,7 @@ class Prediction:
     gain: float = 1.0
 
     def at(self, column: str, drive_s: Array, late_s: float = 0.0) -> Array:
-        """Values of a column of a log (rows,) at times in s from the first row of the drive.
-
-        `late_s`: how much later than the logged drive the module has its current; temperatures follow it, and in a
-        voltage all but I·R, which belongs to the row's own current.
-        """
+        """Values of a column (rows,) at times in s; temperatures, and all but I·R of a voltage, are `late_s` later."""
         time_s = drive_s + late_s
         if column == "voltage_V":
             jump = self.drive.at(np.clip(drive_s, 0.0, self.trace.time_s[-1])) * self.gain * self.resistance_ohm
@@ -61,10 +57,7 @@ class Prediction:
 
 
 def predict(rig: Rig, run: Run, phase: float = 0.0) -> Prediction:
-    """Simulate a run from rest under its first drive; RigError where it is not physical on this rig.
-
-    `phase`: how many times what is wrong with all rows of a drive, if they were read at one phase, is taken from it.
-    """
+    """Simulate a run from rest, less `phase` times what its drive may be wrong by; RigError if not physical."""
     rate = min(RATE_HZ, MOST_ROWS / float(run.time_s[-1]))
     if run.driven_by == DISPLAY:
         return _under_display(rig, run, rate)
@@ -96,10 +89,7 @@ def _under_display(rig: Rig, run: Run, rate_Hz: float) -> Prediction:
 
 
 def steady_level(drive: Array) -> float:
-    """Return the drive of the steady start: the mean of the first rows that differ by noise alone.
-
-    Noise is what the rows before differ by, since a drive that moves in most rows is no noise.
-    """
+    """The drive of the steady start: the mean of the first rows, as long as they differ by what those before did."""
     steps = np.abs(np.diff(drive[:START_ROWS]))
     first, count = float(np.quantile(steps, QUIETEST)), 1
     while count <= len(steps):

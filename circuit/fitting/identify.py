@@ -87,10 +87,7 @@ def is_identified(log: bool, sd: float, usual: float) -> bool:
 def identified(
     problem: Problem, solution: Solution, start: Rig, *, late: bool = False
 ) -> tuple[tuple[Parameter, ...], Array]:
-    """Return the free keys with intervals, and their correlations; `start` is the rig as it was given.
-
-    Where a column of a log is `late`, that must be mended before any measurement can be advised.
-    """
+    """The free keys with intervals, against the rig as given, and correlations; a `late` column is mended first."""
     count, theta = len(problem.keys), solution.theta
     deviation = np.sqrt(np.diag(solution.covariance)[:count])
     correlation = solution.covariance[:count, :count] / np.outer(deviation, deviation)
@@ -153,10 +150,9 @@ def expected_sd(problem: Problem, theta: Array) -> Array:
 
 
 def tellable(problem: Problem) -> tuple[str, ...]:
-    """The keys, of those that are free, that the channels will tell together, judged at the rig to begin with.
+    """Free keys that the channels tell together: all better known than assumed, none much worse than without another.
 
-    In the order of the circuit a key is taken along if all stay better known than they are assumed anyway, and none is
-    told much worse than without it. Noise is that of ten independent readings a second.
+    Noise is that of ten independent readings a second.
     """
     count, sigma = len(problem.keys), list[float]()
     for _, _, channel in problem.channels():

@@ -81,10 +81,7 @@ def possible_keys(rig: Rig, alone: bool = False) -> tuple[FitKey, ...]:
 
 
 def free_keys(keys: Sequence[str], rig: Rig, alone: bool = False) -> tuple[FitKey, ...]:
-    """Return the parameters to fit; raises FitError for none, one twice, and one that cannot be fitted.
-
-    `alone`: under a display without a known current.
-    """
+    """The parameters to fit, `alone` without a known current; FitError for none, one twice, and one that cannot be."""
     names = [key.strip() for key in keys if key.strip()]
     if not names:
         raise FitError(f"no key to fit; name one or several, such as {COMMON[0]}")

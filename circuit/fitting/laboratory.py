@@ -45,11 +45,7 @@ def synthetic_log(
     offset_sd_K: float = OFFSET_SD_K,
     name: str = "synthetic.csv",
 ) -> Log:
-    """Return the log of the calibration drive played on a rig; the same seed gives the same log.
-
-    `rate_Hz` is that of rows and of the driver's updates, `noise_K` and `noise_V` the SD of a reading, `offset_sd_K`
-    that of each temperature sensor's zero.
-    """
+    """The log of the calibration drive on a rig, `rate_Hz` that of rows and updates, with SDs of noise and zeros."""
     trace = simulate(calibration_icon(), rig.with_(**{"driver.update_Hz": rate_Hz}), rate_Hz=rate_Hz)
     random = np.random.default_rng(seed)
     values = {"time_s": trace.time_s, "current_A": trace.current_A}
@@ -82,11 +78,9 @@ class Expected:
 def plan(
     rig: Rig, free: Sequence[str] | None = None, *, offset_K: float = OFFSET_SD_K, fixed_skin: bool = False
 ) -> tuple[Expected, ...]:
-    """Return how well each choice of sensors, the least first, will identify keys of a rig by the calibration drive.
+    """How well each choice of sensors, the least first, will identify keys by the calibration drive of a module.
 
-    From the curvature of the sum of squares at the rig as given, with ten rows a second of white noise: what is left
-    out of the rig adds to it. Without `free`, it is of what all sensors together tell. `offset_K` is the SD of a
-    sensor's zero; `fixed_skin` takes the layers as known. Raises FitError for a thermode.
+    From the curvature of the sum of squares, with ten rows a second of white noise: what the rig lacks adds to it.
     """
     if rig.thermode is not None:
         raise FitError(f"rig {rig.name} is a thermode, and a plan is of the calibration drive of a module")

@@ -31,10 +31,7 @@ OFFSET_SDS = 3.0
 def disagreement(
     problem: Problem, solution: Solution, missed: Sequence[str], late: str, unknown: Sequence[Parameter]
 ) -> tuple[tuple[str, ...], str]:
-    """What rig and logs do not agree in, and that in a few words; nothing where they agree.
-
-    `missed` are sentences on channels, `late` that on a column which explains them; `unknown` was not identified.
-    """
+    """What rig and logs do not agree in, and why in a few words; `missed` and `late` are sentences on channels."""
     if late:
         return (late,), "the columns of a log are not of one time"
     if not solution.converged:
@@ -66,10 +63,7 @@ def _combined(problem: Problem, theta: Array, unknown: Sequence[Parameter]) -> t
 
 
 def remarks(problem: Problem, theta: Array, *, misfit: bool = False) -> tuple[str, ...]:
-    """Sentences on slow drives, starts that were not steady, sensors that are off, and shifted clocks.
-
-    With a `misfit`, an offset is a consequence of what is wrong elsewhere rather than a fault of the sensor.
-    """
+    """Sentences on drives, starts, sensors and clocks; with a `misfit` an offset is a consequence and no fault."""
     sentences = [*_slow_drives(problem), *unsteady(problem, theta)]
     sentences += [_offset(channel, offset, problem.offset_sd_K, misfit) for channel, offset in far_off(problem, theta)]
     for r, run in enumerate(problem.runs):
@@ -156,10 +150,7 @@ standard deviations of the delay itself."""
 
 
 def beyond_noise(problem: Problem, theta: Array, inflation: Sequence[float] = ()) -> tuple[str, ...]:
-    """A sentence on each channel whose residuals at a point exceed the noise of the log; few wild rows do not count.
-
-    With the `inflation` of a solution, also on those whose residuals are within the noise, but have a structure.
-    """
+    """A sentence on each channel whose residuals exceed its noise or, by the `inflation`, have a structure."""
     sentences, noises = list[str](), [channel.noise for _, _, channel in problem.channels()]
     sizes = parts_of(problem, problem.residuals(theta, [max(noise, 1e-9) for noise in noises]))
     for place, (each, part) in enumerate(zip(channel_fits(problem, theta), sizes, strict=True)):
@@ -179,10 +170,7 @@ def beyond_noise(problem: Problem, theta: Array, inflation: Sequence[float] = ()
 
 
 def late_column(problem: Problem, solution: Solution) -> str:
-    """A sentence on the column whose delay against the others of its file explains the residuals best; or nothing.
-
-    Other keys may make up for a delay within the noise: one step of Gauss and Newton tells whether a fit is worth it.
-    """
+    """On the column whose delay explains the residuals best, if any; a step of Gauss and Newton tells which to fit."""
     best, sentence = np.inf, ""
     for r, c, channel in problem.channels():
         if channel.clock or len(problem.runs[r].channels) == 1:
@@ -209,10 +197,7 @@ def late_column(problem: Problem, solution: Solution) -> str:
 
 
 def explaining(problem: Problem, solution: Solution) -> list[str]:
-    """Keys that are held fixed, and would take away most of the residuals if they were free, the best first.
-
-    Judged by the sum of squares after one step of Gauss and Newton, with far outliers cut.
-    """
+    """Fixed keys that would take away most of the sum of squares in one step of Gauss and Newton, the best first."""
     rig = problem.rig.with_(**problem.values(solution.theta))
     own = [key.key for key in problem.keys]
     others = [key.key for key in possible_keys(rig, problem.alone) if key.key not in own]

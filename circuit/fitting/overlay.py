@@ -74,10 +74,7 @@ class Overlay:
 
 
 def overlay(trace: Trace, log: Log, *, shift_s: float | None = None) -> Overlay:
-    """Lay a log beside a trace; `shift_s` is added to its times, None: what makes both most alike by cross-correlation.
-
-    Raises LogError where they have no column or no time in common.
-    """
+    """Lay a log beside a trace, shifted by `shift_s` or to be most alike; LogError where nothing is in common."""
     simulated = {name: getattr(trace, name) for name in SHIFTED_BY} | {f"probe_{n}_C": v for n, v in trace.probes}
     common = [name for name, _ in log.columns if name in simulated and np.isfinite(simulated[name]).any()]
     if not common:
@@ -105,10 +102,7 @@ def overlay(trace: Trace, log: Log, *, shift_s: float | None = None) -> Overlay:
 
 
 def best_shift_s(reference_s: Array, reference: Array, time_s: Array, values: Array) -> tuple[float, float]:
-    """Return what to add to `time_s` so that `values` fit a reference best, and the correlation there.
-
-    NaN are left out. Where either has no number or no change, shift and correlation are 0.
-    """
+    """What to add to `time_s` so that values fit a reference best, and the correlation; 0 where nothing changes."""
     there, other = np.isfinite(reference), np.isfinite(values)
     if not (there.any() and other.any()):
         return 0.0, 0.0
@@ -157,10 +151,7 @@ LEAST_OVERLAP = 0.5
 
 
 def aligned(rig: Rig, runs: Sequence[Run]) -> tuple[Run, ...]:
-    """Return the runs with the shift of every further clock, by correlation with the simulation of a rig.
-
-    Raises FitError for a run that the rig cannot play, and LogError for a file whose rows hardly overlap with its run.
-    """
+    """Runs with the shift of every further clock, by correlation; FitError or LogError where that is not possible."""
     out = []
     for run in runs:
         try:

@@ -136,10 +136,6 @@ class Problem:
             for key, place in zip(self.keys, theta, strict=False)
         }
 
-    def rig_at(self, theta: Array) -> Rig:
-        """The rig at a point; raises RigError where no rig file may have these values."""
-        return self.rig.with_(**self.values(theta), **changed_layers(self.rig, self.factors(theta)))
-
     def factors(self, theta: Array) -> Factors:
         """Logarithms of what the layers of the skin are multiplied by; empty where they are not fitted along."""
         all_ = zip(self.unknowns, theta, strict=True)
@@ -152,7 +148,7 @@ class Problem:
         if token not in self._kept:
             if len(self._kept) > 4 * (len(moving) + 1):
                 self._kept.clear()
-            rig = self.rig_at(theta)
+            rig = self.rig.with_(**self.values(theta), **changed_layers(self.rig, self.factors(theta)))
             self._kept[token] = tuple(
                 predict(rig, run, self.nuisance(theta, "phase", r, 0)) for r, run in enumerate(self.runs)
             )
@@ -198,10 +194,7 @@ class Problem:
         return [(r, c, channel) for r, run in enumerate(self.runs) for c, channel in enumerate(run.channels)]
 
     def residuals(self, theta: Array, sigma: Sequence[float]) -> Array:
-        """Simulated minus measured of all channels, then what is fitted along, in SDs of the noise and of the priors.
-
-        Rows outside their run are 0.
-        """
+        """Simulated minus measured, 0 outside of runs, then what is fitted along, in SDs of noise and priors."""
         found = self.predictions(theta)
         if found is None:
             count = sum(len(channel.values) for _, _, channel in self.channels())
@@ -214,10 +207,7 @@ class Problem:
         return np.concatenate([*self._independent(parts, tuple(sigma)), np.array(prior)])
 
     def _independent(self, parts: Sequence[Array], sigma: tuple[float, ...]) -> list[Array]:
-        """Differences of each channel in SDs of its noise; where the drive is not known between rows, made independent.
-
-        How rows err alike is that of the rig to begin with.
-        """
+        """Differences in SDs of their noise, made independent where the drive is unknown between rows."""
         if not self._shared:
             for r, run in enumerate(self.runs):
                 times = [self.run_time_s(self.first, r, channel) for channel in run.channels]

@@ -118,10 +118,7 @@ class RigFit(Tabled):
         return toml_text(document)
 
     def save(self, path: str | Path) -> None:
-        """Write the fitted rig with its provenance to a `.toml` file, by that file's name.
-
-        Raises FitError for another ending, and a path that cannot be written.
-        """
+        """Write the fitted rig to a `.toml` file, by that file's name; FitError for a path that cannot be."""
         from .keys import FitError
 
         where = Path(path)
@@ -175,10 +172,9 @@ def uncertainties(
     before: Uncertainty,
     misfit: bool = False,
 ) -> dict[str, float]:
-    """Return the keys of [uncertainty] with half widths of intervals, for what was identified.
+    """Half widths for [uncertainty] of what was identified; for both plates the wider, or nothing where one is lacking.
 
-    Both plates share one key: it is the wider of both, and nothing where only one was fitted. After a `misfit`, and for
-    what was not identified, only what must be wider is returned, so that what the rig held `before` still is.
+    After a `misfit`, and for what was not identified, only what must be wider than `before`.
     """
     stated: dict[str, float] = {}
     identified = {item.key for item in parameters if item.identified}
@@ -200,10 +196,7 @@ def uncertainties(
 
 
 def _covering(item: Parameter, before: float) -> float:
-    """Half width about a rig's value that holds the fitted interval and all that the rig before held, ±`before`.
-
-    A rig keeps its value where the interval says nothing: of the fit, only the value need be held then.
-    """
+    """Half width that holds the fitted interval and the one before; the value alone where the interval says nothing."""
     if not item.identified:
         return abs(item.value - item.start) / (item.start if item.log else 1.0)
     ends = before * item.start if item.log else before

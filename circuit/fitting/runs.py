@@ -97,11 +97,9 @@ class Run:
 
 
 def runs_of(logs: Sequence[Log], rig: Rig | None = None) -> tuple[Run, ...]:
-    """Return the runs of logs; a log without a drive goes with the one before it, or with the only one there is.
+    """The runs of logs; one without a drive goes with the log before it. Without a current the display is the drive.
 
-    Without a current, and on a thermode, the display drives what is deeper. A `rig` says how often its driver changes;
-    without one, the rows tell the drive. Raises LogError for logs without a drive, without a measured column, or with a
-    drive that is not known throughout.
+    Without a `rig`, which has the driver's rate, rows tell all. LogError for a drive that is not known throughout.
     """
     if not logs:
         raise LogError("no log; name one or several files")

@@ -80,10 +80,7 @@ def parts_of(problem: Problem, residuals: Array) -> list[Array]:
 
 
 def spreads(problem: Problem, theta: Array, before: Sequence[float] = ()) -> tuple[float, ...]:
-    """Robust standard deviation of each channel's residuals, at least that of what changes from row to row.
-
-    Where rows err alike, residuals are made independent by the noise found `before`, at first by that least one.
-    """
+    """Robust SD of each channel's residuals, made independent by the noise `before`, and at least that between rows."""
     channels = [channel for _, _, channel in problem.channels()]
     least = [max(channel.noise, LEAST_SD[channel.temperature]) for channel in channels]
     sigma = before or least

@@ -150,12 +150,7 @@ COURSE_EVERY_S = 0.1
 
 
 def script(kind: str, on: str, numbers: Numbers, courses_C: Mapping[str, Sequence[float]], off_V: float = 0.0) -> str:
-    """Return the script for a line; equal inputs give equal text.
-
-    `courses_C` has by the names of drive files, which alone are played, the predicted display in °C every
-    `COURSE_EVERY_S`; an NI output needs it, the others find it in their drives. `off_V` leaves a display on an NI
-    output without power.
-    """
+    """The script for a line and the predicted display in °C by drive file; equal inputs give equal text."""
     module, functions = LINES[kind]
     names: dict[str, set[str]] = {"time": set(), "os": set()}
     texts = [_parted(inspect.getsource(each), names) for each in (line, guard, module)]

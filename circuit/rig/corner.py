@@ -3,11 +3,10 @@
 import json
 import math
 from dataclasses import replace
-from typing import Any
 
 from thermicon.icons.number_text import signed
 
-from .faults import PARAMETERS, sentence
+from .faults import sentence
 from .module import ZERO_C_IN_K, Peltier
 from .parts import HeatSink
 from .rig import Rig
@@ -26,10 +25,8 @@ def perturbed(
 ) -> Rig:
     """Return a rig whose numbers deviate from those of its file, beyond whose bounds they may lie.
 
-    Shares (−0.3 is 30 % less) of contact resistance, Seebeck coefficient, thermal conductance of the module (its
-    resistance goes the other way) and heat capacities of the plates; K of the room air, and of the heat sink, its
-    set point, or a passive sink and its air. Bare skin rests as given; blood is solved again where the rig solves it.
-    Raises RigError for what is physically impossible.
+    Shares (−0.3 is 30 % less), the resistance of the module against its conductance, and K; a passive sink has its air
+    with it. Bare skin rests as given; blood is solved again where the rig solves it.
     """
     shares = {
         "contact resistance": contact_resistance_relative,
@@ -43,25 +40,19 @@ def perturbed(
     _check(rig, shares, shifts)
     if not any((*shares.values(), ambient_K, heat_sink_K)):
         return rig
-    document, changed = json.loads(rig.document), rig
+    changed = rig
     if contact_resistance_relative:
         resistance = rig.contact.resistance_m2K_per_W * (1.0 + contact_resistance_relative)
-        document["contact"]["resistance_m2K_per_W"] = resistance
         changed = replace(changed, contact=replace(rig.contact, resistance_m2K_per_W=resistance))
     if ambient_K:
         ambient = rig.ambient.model_copy(update={"temperature_C": rig.ambient.temperature_C + ambient_K})
-        document["ambient"]["temperature_C"] = ambient.temperature_C
-        if rig.pump is not None and rig.heat_sink.passive is not None:  # its air does not follow the room's
-            document["heat_sink"]["air_C"] = rig.heat_sink.passive.air_C
         changed = replace(changed, ambient=ambient, deep_C=_deep_C(rig, ambient.temperature_C))
     if heat_sink_K:
-        sink = _warmer(rig.heat_sink, heat_sink_K)
-        document["heat_sink"] |= _temperatures(sink)
-        changed = _pumped(changed, heat_sink=sink)
+        changed = _pumped(changed, heat_sink=_warmer(rig.heat_sink, heat_sink_K))
     if seebeck_relative or conductance_relative or plates_relative:
-        module = _module(rig, seebeck_relative, conductance_relative, plates_relative)
-        document["module"] = _module_table(module)
-        changed = _pumped(changed, module=module)
+        changed = _pumped(changed, module=_module(rig, seebeck_relative, conductance_relative, plates_relative))
+    # Caches are keyed by the document.
+    document = json.loads(rig.document) | {"corner": {**shares, "ambient": ambient_K, "heat sink": heat_sink_K}}
     return replace(changed, document=json.dumps(document, sort_keys=True, ensure_ascii=False))
 
 
@@ -93,14 +84,6 @@ def _warmer(sink: HeatSink, shift_K: float) -> HeatSink:
     return replace(sink, temperature_C=sink.temperature_C + shift_K, passive=passive)
 
 
-def _temperatures(sink: HeatSink) -> dict[str, float]:
-    """The keys of a rig file that hold the temperatures of a heat sink."""
-    if sink.passive is None:
-        return {"temperature_C": sink.temperature_C}
-    start = {} if sink.passive.steady else {"temperature_C": sink.temperature_C}
-    return {**start, "air_C": sink.passive.air_C}
-
-
 def _deep_C(rig: Rig, ambient_C: float) -> float:
     """Blood and deep tissue in °C in air of another temperature: as given, or solved so that bare skin rests."""
     if rig.skin.deep_C is not None:
@@ -121,10 +104,6 @@ def _module(rig: Rig, seebeck: float, conductance: float, plates: float) -> Pelt
         )
     except ValueError as problem:  # a share so large that nothing finite is left
         raise RigError(f"rig {rig.name}, one corner of it: {problem}; use less") from None
-
-
-def _module_table(module: Peltier) -> dict[str, Any]:
-    return {key: getattr(module, key) for key in (*PARAMETERS, "hot_plate_J_per_K", "cold_plate_J_per_K")}
 
 
 def _check(rig: Rig, shares: dict[str, float], shifts: dict[str, tuple[float, float]]) -> None:

@@ -1,19 +1,16 @@
-"""Keys of a rig file: what their values may be, the units that end them, and faults between them, a sentence each."""
+"""Keys of a rig file: what their values may be, the units that end them, and sentences on what is wrong or unusual."""
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from functools import cache
 from importlib import resources
-from typing import TYPE_CHECKING, Annotated, NamedTuple, Self
+from typing import Annotated, NamedTuple, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from ..inputs import one_line, paragraph
-
-if TYPE_CHECKING:
-    from .rigfile import HeatSinkTable, ModuleTable, RigTable
 
 PARAMETERS = ("seebeck_V_per_K", "resistance_ohm", "thermal_resistance_K_per_W")
 """The three parameters of a module in a rig file."""
@@ -143,51 +140,3 @@ class Unusual(NamedTuple):
 def unusual(kind: str, /, **values: object) -> Unusual:
     """What is unusual, with the values that its sentence names."""
     return Unusual(kind, sentence(f"warnings.{kind}", **values))
-
-
-def rig_faults(table: RigTable) -> list[str]:
-    """Faults between tables of a rig file: of what warms and cools the display."""
-    return list(_display(table))
-
-
-def _display(table: RigTable) -> Iterator[str]:
-    """A module with its parts, or a thermode: never both."""
-    pumped = {key: getattr(table, key) for key in ("module", "heat_sink", "driver", "controller")}
-    given = [key for key, part in pumped.items() if part is not None]
-    missing = [key for key in ("module", "heat_sink", "driver") if pumped[key] is None]
-    if table.thermode is not None and given:
-        parts, tables = " and no ".join(given), ", ".join(f"[{key}]" for key in given)
-        yield sentence("faults.both", parts=parts, tables=tables)
-    elif table.thermode is None and len(missing) == 3:
-        yield sentence("faults.neither")
-    elif table.thermode is None:
-        yield from (sentence("faults.part", key=key) for key in missing)
-
-
-def heat_sink_faults(table: HeatSinkTable) -> Iterator[str]:
-    """Faults in the keys of a heat sink."""
-    passive = table.air_resistance_K_per_W is not None
-    both = [f"heat_sink.{key}" for key in CONTROLLED[1:] if getattr(table, key) is not None]
-    if table.temperature_C is None and not passive:
-        yield sentence("faults.sink_start")
-    if table.air_C is not None and not passive:
-        yield sentence("faults.sink_air", air=table.air_C)
-    if passive and both:
-        yield sentence("faults.sink_both", keys=", ".join(both))
-    elif passive and table.capacity_J_per_K is None:
-        yield sentence("faults.sink_capacity")
-
-
-def module_faults(table: ModuleTable) -> Iterator[str]:
-    """Faults in how a rig file gives its module: by parameters, data sheets or a name."""
-    stated = [key for key in PARAMETERS if getattr(table, key) is not None]
-    ways = [*stated[:1], *(key for key in ("datasheet", "name") if getattr(table, key) is not None)]
-    missing = [key for key in PARAMETERS if stated and key not in stated]
-    if not ways:
-        yield sentence("faults.module_none", keys=", ".join(PARAMETERS))
-    elif len(ways) > 1:
-        yield sentence("faults.module_two", ways=" and ".join(ways))
-    elif missing:
-        yield from (sentence("faults.module_key", key=key, unit=unit_of(key)) for key in missing)
-    elif table.datasheet is not None and len(table.datasheet) not in (1, 2):
-        yield sentence("faults.module_sheets", count=len(table.datasheet))

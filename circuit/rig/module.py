@@ -112,10 +112,7 @@ class Datasheet(KeyTable):
 
 
 def at_mean_C(extractions: Sequence[Extraction], mean_C: float) -> tuple[float, float, float]:
-    """α V/K, R Ω and Θ K/W at a mean module temperature, linear between two extractions; one is taken as it is.
-
-    Outside the two, the nearer one is used, since no sheet supports an extrapolation; callers report it.
-    """
+    """α V/K, R Ω and Θ K/W at a mean temperature, linear between two extractions, the nearer one outside."""
     first, last = min(extractions, key=lambda one: one.mean_C), max(extractions, key=lambda one: one.mean_C)
     span = last.mean_C - first.mean_C
     share = min(max((mean_C - first.mean_C) / span, 0.0), 1.0) if span > 0 else 0.0

@@ -3,12 +3,10 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
-from importlib import resources
 
 from thermicon.icons.near_words import did_you_mean
 
-from ..records import Record, RecordError, Table, load_records
+from ..records import Record, RecordError, Table, shipped_records
 from .faults import PARAMETERS, Unusual, sentence, unusual
 from .module import Datasheet, Extraction, Peltier, at_mean_C
 from .rigfile import ModuleTable
@@ -39,10 +37,9 @@ class ModuleOrigin:
     warnings: tuple[Unusual, ...] = ()
 
 
-@cache
 def module_table() -> Table:
     """The shipped modules as sourced records, one for each data sheet."""
-    return load_records(resources.files("thermicon.circuit") / "data" / "modules.toml", extra=COLUMNS)
+    return shipped_records("modules.toml", *COLUMNS)
 
 
 def module_names() -> tuple[str, ...]:
@@ -83,11 +80,7 @@ def _records(name: str) -> list[Record]:
 
 
 def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> tuple[Peltier, ModuleOrigin]:
-    """Return the module of a rig file and its origin; ValueError where its figures are impossible.
-
-    `mean_C` is the mean module temperature, where two sheets are interpolated: that of heat sink and resting skin.
-    `source` is what the rig's own `[source]` says of its module.
-    """
+    """The module of a rig file at a mean temperature, and its origin; ValueError where its figures are impossible."""
     plates = (table.hot_plate_J_per_K, table.cold_plate_J_per_K)
     if table.name is None and table.datasheet is None:
         alpha, ohm, theta = (float(getattr(table, key)) for key in PARAMETERS)

@@ -18,10 +18,7 @@ class SinkController:
 
 @dataclass(frozen=True, slots=True)
 class PassiveSink:
-    """A heat sink without control, cooled by air: capacity J/K, resistance to the air K/W, temperature of that air °C.
-
-    `steady`: a run starts where the resting current and the air leave it, not at a given temperature.
-    """
+    """A heat sink in air: capacity J/K, resistance K/W, air °C; `steady` where a run begins in balance with that."""
 
     capacity_J_per_K: float
     air_resistance_K_per_W: float

@@ -6,12 +6,11 @@ import json
 import textwrap
 from collections.abc import Iterator
 from functools import lru_cache
-from importlib import resources
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import signed
 
-from ..records import load_records
+from ..records import shipped_records
 from .faults import Unusual, unit_of, unusual
 from .modules import build_of, module_names
 from .rigfile import Thermode
@@ -41,11 +40,7 @@ HIGH_RESTING_FLUX_W_PER_M2 = 150.0
 
 
 def rig_summary(rig: Rig, for_methods: bool = False) -> str:
-    """Return title, site, rest, receptor depths in both conventions, module, warnings and notes, as lines of text.
-
-    A methods section has the driver in place of warnings and notes; it leaves out a title where the module has a name,
-    since it may describe the module that was there before.
-    """
+    """What to know of a rig, as lines; a methods section has its driver, but no title that may be out of date."""
     rows = _rows(rig)
     named = for_methods and "name" in json.loads(rig.document).get("module", {})
     if not for_methods:
@@ -80,7 +75,7 @@ def _rows(rig: Rig) -> list[tuple[str, str]]:
 
 def _resistance(contact: Contact) -> str:
     """The resistance of a contact, and what those of its kind have."""
-    for record in load_records(resources.files("thermicon.circuit") / "data" / "contacts.toml"):
+    for record in shipped_records("contacts.toml"):
         low, high = record.interval
         if low <= contact.resistance_m2K_per_W <= high:
             return f", {contact.resistance_m2K_per_W:g} m²K/W ({record.method}: {low:g} to {high:g})"

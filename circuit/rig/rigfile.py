@@ -16,6 +16,8 @@ from ..inputs import (
     read_toml,
 )
 from .faults import (
+    CONTROLLED,
+    PARAMETERS,
     Amperes,
     Celsius,
     Conductivity,
@@ -33,9 +35,7 @@ from .faults import (
     Positive,
     Text,
     Volts,
-    heat_sink_faults,
-    module_faults,
-    rig_faults,
+    sentence,
     unit_of,
 )
 from .module import Datasheet
@@ -73,8 +73,18 @@ class ModuleTable(KeyTable):
     cold_plate_J_per_K: Ideal
 
     def faults(self) -> Iterable[str]:
-        """See `module_faults`."""
-        return module_faults(self)
+        """Given in no way or in two, or by too few parameters or too many sheets."""
+        stated = [key for key in PARAMETERS if getattr(self, key) is not None]
+        ways = [*stated[:1], *(key for key in ("datasheet", "name") if getattr(self, key) is not None)]
+        missing = [key for key in PARAMETERS if stated and key not in stated]
+        if not ways:
+            yield sentence("faults.module_none", keys=", ".join(PARAMETERS))
+        elif len(ways) > 1:
+            yield sentence("faults.module_two", ways=" and ".join(ways))
+        elif missing:
+            yield from (sentence("faults.module_key", key=key, unit=unit_of(key)) for key in missing)
+        elif self.datasheet is not None and len(self.datasheet) not in (1, 2):
+            yield sentence("faults.module_sheets", count=len(self.datasheet))
 
 
 class HeatSinkTable(KeyTable):
@@ -90,8 +100,17 @@ class HeatSinkTable(KeyTable):
     power_limit_W: Annotated[float, Field(ge=1e-6, le=1e6)] | None = None
 
     def faults(self) -> Iterable[str]:
-        """See `heat_sink_faults`."""
-        return heat_sink_faults(self)
+        """Neither a temperature nor air, or a controller and air at once."""
+        passive = self.air_resistance_K_per_W is not None
+        both = [f"heat_sink.{key}" for key in CONTROLLED[1:] if getattr(self, key) is not None]
+        if self.temperature_C is None and not passive:
+            yield sentence("faults.sink_start")
+        if self.air_C is not None and not passive:
+            yield sentence("faults.sink_air", air=self.air_C)
+        if passive and both:
+            yield sentence("faults.sink_both", keys=", ".join(both))
+        elif passive and self.capacity_J_per_K is None:
+            yield sentence("faults.sink_capacity")
 
 
 class DriverTable(KeyTable):
@@ -112,10 +131,7 @@ class ContactTable(KeyTable):
 
 
 class Controller(KeyTable):
-    """A PID loop on a display thermistor, sampled at the driver's update rate; positive current cools.
-
-    Thermistor lag s, gains A/K, A/(K·s), A·s/K; the derivative acts on the measured temperature.
-    """
+    """A PID loop on the display: thermistor lag s, gains A/K, A/(K·s), and A·s/K on the measured temperature."""
 
     lag_s: Lag = 0.0
     kp_A_per_K: Gain
@@ -243,8 +259,17 @@ class RigTable(KeyTable):
     source: dict[Text, Paragraph] = Field(default_factory=dict)
 
     def faults(self) -> Iterable[str]:
-        """See `rig_faults`."""
-        return rig_faults(self)
+        """A module with its parts, or a thermode: never both."""
+        pumped = {key: getattr(self, key) for key in ("module", "heat_sink", "driver", "controller")}
+        given = [key for key, part in pumped.items() if part is not None]
+        missing = [key for key in ("module", "heat_sink", "driver") if pumped[key] is None]
+        if self.thermode is not None and given:
+            parts, tables = " and no ".join(given), ", ".join(f"[{key}]" for key in given)
+            yield sentence("faults.both", parts=parts, tables=tables)
+        elif self.thermode is None and len(missing) == 3:
+            yield sentence("faults.neither")
+        elif self.thermode is None:
+            yield from (sentence("faults.part", key=key) for key in missing)
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:

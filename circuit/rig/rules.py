@@ -6,9 +6,8 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib import resources
 
-from ..records import Record, Table, load_records
+from ..records import Record, Table, shipped_records
 from .faults import sentence
 
 SHORTEST_REASON, FEWEST_WORDS = 20, 4
@@ -126,10 +125,9 @@ class Limits:
         return {"changed": list(self.changed), "loosened": list(self.loosened), "reason": self.reason or None}
 
 
-@cache
 def limit_table() -> Table:
     """The shipped limits, each with its source."""
-    return load_records(resources.files("thermicon.circuit") / "data" / "limits.toml", extra=_EXTRA)
+    return shipped_records("limits.toml", *_EXTRA)
 
 
 def safety_keys() -> tuple[str, ...]:
@@ -153,10 +151,11 @@ def faults_of(changes: Mapping[str, float], reason: str = "") -> list[str]:
             continue
         value, unit = changes[rule.key], f" {rule.unit}" if rule.unit != "1" else ""
         subject = f"safety.{rule.key} = {value:g}{unit}"
-        if beyond(rule):
+        bound = rule.shipped if rule.bound is None else rule.bound
+        if rule.limit > bound if rule.upper else rule.limit < bound:
             reported.add(rule.key)
-            bound, why = (rule.shipped, "no published figure allows more") if rule.bound is None else (rule.bound, "")
-            end, why = f"{abs(bound):g}{unit}", why or rule.bound_source
+            why = "no published figure allows more" if rule.bound is None else rule.bound_source
+            end = f"{abs(bound):g}{unit}"
             side = "at most" if rule.upper or bound < 0 else "at least"
             faults.append(f"{subject}: cannot be loosened beyond {end} ({why}); use {side} {end}")
         elif rule.loosened and not is_reason(reason):
@@ -164,12 +163,6 @@ def faults_of(changes: Mapping[str, float], reason: str = "") -> list[str]:
             limit, least = f"{abs(rule.shipped):g}{unit}", {"letters": SHORTEST_REASON, "words": FEWEST_WORDS}
             faults.append(sentence("faults.looser", subject=subject, limit=limit, **least))
     return faults + _crossed(changes, reason)
-
-
-def beyond(rule: Rule) -> bool:
-    """Whether a rule's limit is looser than its bound, or than the shipped limit where no bound is published."""
-    bound = rule.shipped if rule.bound is None else rule.bound
-    return rule.limit > bound if rule.upper else rule.limit < bound
 
 
 def is_reason(text: str) -> bool:

@@ -48,10 +48,7 @@ def flattened(changes: Mapping[str, object], prefix: str = "") -> dict[str, obje
 
 
 def put_all(document: dict[str, Any], changes: Mapping[str, object]) -> None:
-    """Set dotted keys in the document; a changed module loses its source and the way it was given before.
-
-    A module given by name sets its plates too, where they are on record.
-    """
+    """Set dotted keys; a changed module loses its source and former form, one given by name gets its plates."""
     for key, value in changes.items():
         if key in ("module.datasheet", "module.name") and value is not None:
             for way in (*PARAMETERS, "datasheet", "name"):

@@ -5,13 +5,11 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass, field, replace
-from functools import cache
-from importlib import resources
 
 import numpy as np
 
 from ..arrays import Array
-from ..records import Table, load_records
+from ..records import Table, shipped_records
 from .faults import sentence
 
 STRATUM_CORNEUM = "stratum corneum"
@@ -27,17 +25,14 @@ display by 30 to 50 °C.
 """
 
 
-@cache
 def layer_spreads() -> Table:
     """How the layers of people's skin differ from those of a rig file, each with its source."""
-    return load_records(resources.files("thermicon.circuit") / "data" / "skin-spread.toml")
+    return shipped_records("skin-spread.toml")
 
 
-@cache
 def usual_depth_mm(channel: str) -> float:
     """Depth of the cold or warm receptors in mm where nobody places them: from the base of the stratum corneum."""
-    records = load_records(resources.files("thermicon.circuit") / "data" / "receptor-depths.toml")
-    return records.one("receptor depth", channel=channel).central
+    return shipped_records("receptor-depths.toml").one("receptor depth", channel=channel).central
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,12 +6,11 @@ written reason, which is reported with every verdict.
 
 from collections.abc import Iterator
 from functools import cache
-from importlib import resources
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field
 
-from ..records import Table, load_records
+from ..records import shipped_records
 from .faults import KeyTable, Text, sentence
 from .rules import FEWEST_WORDS, SHORTEST_REASON, is_reason
 
@@ -25,12 +24,6 @@ WORDS = {
     "plates_relative": ("plates", "plates", 100.0, "%"),
 }
 """What is uncertain: its name, a short name for lists, the factor to the unit that people read, and that unit."""
-
-
-@cache
-def uncertainty_table() -> Table:
-    """The shipped uncertainties, each with its source."""
-    return load_records(resources.files("thermicon.circuit") / "data" / "uncertainty.toml")
 
 
 def _shipped_or(most: float, key: str) -> Any:
@@ -74,4 +67,4 @@ def tightened(uncertainty: Uncertainty) -> tuple[str, ...]:
 
 @cache
 def _shipped() -> dict[str, float]:
-    return {record.quantity: record.central for record in uncertainty_table()}
+    return {record.quantity: record.central for record in shipped_records("uncertainty.toml")}

@@ -262,10 +262,7 @@ class Harm:
 
 @dataclass(frozen=True, slots=True)
 class SingleFault:
-    """A single fault: its kind, the verdict on the drive with it, and what is to be told of harm and prevention.
-
-    Kinds and the names of their values are those of `circuit/data/fault-words.toml`, which has their sentences.
-    """
+    """A single fault: a kind of `circuit/data/fault-words.toml` with its values, and the verdict with it."""
 
     kind: str
     colour: str

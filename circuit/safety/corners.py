@@ -27,10 +27,7 @@ NEARLY = 0.97
 
 @dataclass(frozen=True, slots=True)
 class Corner:
-    """One possible state of the rig: shares and K of deviation from the rig's file, and the rig there.
-
-    The gain of the current source is not part of `rig`: it scales the current.
-    """
+    """One possible state of a rig: shares and K of deviation; the gain, which scales currents, is not part of `rig`."""
 
     rig: Rig
     contact_resistance_relative: float = 0.0

@@ -127,11 +127,7 @@ class _InPlays:
 
 
 def _in_plays(faulty: Faulty, hardest: list[int], ends_C: Span) -> _InPlays:
-    """What prevents faults in plays of a drive between bounds, with a cut-off at both `ends_C`.
-
-    Watchdog and cut-off are found in the `hardest` corners, tried in all at the instants that decided, and found again
-    where they are too slow.
-    """
+    """What prevents faults in plays between bounds: found in the `hardest` corners, again where too slow."""
     for current_A in faulty.ends_A if faulty.ensemble.ideal else ():
         faulty.ensemble.modes(current_A)  # once for all corners and icons
     few = faulty.at(hardest)
@@ -156,9 +152,7 @@ def _in_plays(faulty: Faulty, hardest: list[int], ends_C: Span) -> _InPlays:
 
 
 def _resting(faulty: Faulty, ends_C: Span) -> tuple[CutOff, SingleFault]:
-    """What prevents harm, in all corners, where the driver gets stuck before a play: between the bounds, or without
-    power before, with the polarity tested or not.
-    """
+    """What prevents harm where the driver gets stuck before a play, between the bounds or without power before."""
     ensemble, off = faulty.ensemble, faulty.ensemble.at_rest(0.0)
     test_A = testing_A(ensemble)
     unpowered = (off, faulty.rest_A), (ensemble.rest(test_A, off, TEST_S), test_A)
@@ -223,10 +217,7 @@ def testing_A(ensemble: Ensemble) -> float:
 
 
 def dose_time_s(ensemble: Ensemble, limits: Limits, state: State, dose_before: Array, session_s: float) -> float:
-    """For how long in s zero current may last before the dose of skin reaches its limit, at most a session.
-
-    `dose_before` (corners,) in min CEM43 is what the drive has added.
-    """
+    """How long in s zero current may last until the dose, `dose_before` (corners,) with it, reaches its limit."""
     most = next(rule.limit for rule in limits.rules if rule.quantity == "thermal dose")
     times = np.concatenate([[0.0], np.geomspace(1.0, session_s, 120)])
     values, _ = ensemble.hold(0.0, state, times)

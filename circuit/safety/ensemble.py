@@ -85,9 +85,7 @@ class Ensemble:
         return np.arange(len(self.corners), dtype=np.int64)
 
     def at_rest(self, rest_A: float | Array) -> State:
-        """Steady states under a current, or each lane's; the hottest where a corner has none, RigError for the rig as
-        given.
-        """
+        """Steady states under a current, or each lane's; hottest where a corner has none, RigError for the rig."""
         rests = np.broadcast_to(rest_A, len(self.corners)).tolist()
         states = self.bank.states(
             [self._steady(corner, rest) for corner, rest in zip(self.corners, rests, strict=True)]
@@ -146,10 +144,7 @@ class Ensemble:
     def hold(
         self, current_A: float | Array, state: State, times_s: Array, rigs: Index | None = None
     ) -> tuple[Array, State]:
-        """Hold a constant current (with a bridge: its mean) and return WATCHED at times from now, and the last states.
-
-        Times begin with 0. An array has the current of each corner; `rigs` (lanes,): a lane's corner.
-        """
+        """WATCHED at times from 0 on under a constant current, or one of each corner, and the last states."""
         which = self.lanes if rigs is None else rigs
         if self.ideal:
             after = self.modes(current_A).after(which, state.nodes_C, float(times_s[-1]))
@@ -193,10 +188,7 @@ class Ensemble:
 
 
 def row_of(drive: Drive | LaneDrives) -> float:
-    """Distance in s of the rows that a drive is watched at: its shortest update or a whole part of it, at most ROW_S.
-
-    Rows in step with the updates see each of them whole, and never finer than FINEST_S.
-    """
+    """Distance in s of rows: the shortest update of a drive or a whole part of it, from FINEST_S to ROW_S."""
     shortest = round(float(np.diff(drive.time_s).min()), 9)  # differences of times are off by rounding
     return float(max(FINEST_S, shortest / max(1.0, np.ceil(shortest / ROW_S - 1e-9))))
 

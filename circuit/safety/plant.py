@@ -126,10 +126,7 @@ class Plant(ABC, Generic[Played, States]):
 
     @abstractmethod
     def stopped(self, plays: Sequence[Played], bounds: tuple[States, States]) -> tuple[States, States]:
-        """States warmer, and colder, than any in which the rest before a first play may begin.
-
-        The display was without power, or a play between the bounds (warm, cold) of all was stopped at any instant.
-        """
+        """States warmer, and colder, than after no power, or after a stop of a play between the bounds (warm, cold)."""
 
     @abstractmethod
     def demanded(
@@ -140,9 +137,7 @@ class Plant(ABC, Generic[Played, States]):
         tallies: Sequence[list[Tally]],
         shortest_s: float | None,
     ) -> tuple[float | None, list[tuple[Demands, tuple[Check, ...]]]]:
-        """The shortest pause after which single faults can be prevented in practice, what prevents them, and what fails
-        where nothing does.
-        """
+        """The shortest pause with which single faults can be prevented, what prevents them, and what fails."""
 
     def only(self, corners: list[int]) -> Plant[Played, States]:
         """The same in some of the corners, or in all where that takes next to no time."""
@@ -177,9 +172,7 @@ def follow(
     tallies: Sequence[Tally],
     sums: bool = True,
 ) -> dict[str, Array]:
-    """Add what follows a play that ended at a time to the tally of each ending, doses with `sums`; the skin a minute
-    later.
-    """
+    """Add what follows a play that ended at `end_s` to the tally of each ending; the skin of each a minute later."""
     after_C = {}
     for ending, tally, futures in zip(plant.endings, tallies, plant.let_go(play, ended), strict=True):
         for future in futures:
@@ -223,10 +216,7 @@ class Single(Generic[Played, States]):
         sums: Tally | None = None,
         watch: Callable[[float], None] | None = None,
     ) -> Single[Played, States]:
-        """Play from rest; raises RigError where the rig as given has no steady state to start from.
-
-        `before_s`: how long other plays took, whose doses `sums` has; `watch` is called with the seconds played.
-        """
+        """Play from rest, after `before_s` of others with the doses of `sums`; RigError where there is no rest."""
         start = state = plant.rest(play)
         played = sums or Tally(limits, plant.corners, Scenario(way=play.way))
         for (rows, values), then in plant.play(play, start):
@@ -256,9 +246,7 @@ class Single(Generic[Played, States]):
 
 
 def recovery_s(plant: Plant[Played, States], play: Played, start: States, ended: States) -> float | None:
-    """Time in s from a play's end until display and skin are within 0.1 K of a start in every corner; None: over 10
-    min.
-    """
+    """Time in s after a play until display and skin are near a start in every corner; None: over 10 min."""
     which = [WATCHED.index("display_C"), WATCHED.index("skin_C")]
     values = plant.hold(play, ended, RECOVERY_ROWS_S)[which]
     away = np.abs(values - plant.now(play, start)[which][:, :, np.newaxis]).max(axis=(0, 1)) > RECOVERED_K

@@ -103,10 +103,7 @@ def _settles(matrix: Array) -> bool:
 
 
 def least_bound(maps: Sequence[PlayMap], starts_C: Sequence[Array], side: float) -> Array:
-    """Nodes (rigs, m) that starts and plays never exceed, by `side` 1 above or −1 below; NaN where there are none.
-
-    The result is checked: every start lies inside, and no play leads out.
-    """
+    """Nodes (rigs, m) that starts and plays never exceed, by `side` 1 above or −1 below; checked, NaN for none."""
     most = np.max([side * start for start in starts_C], axis=0)
     matrices = np.stack([np.zeros_like(maps[0].matrix), *(each.matrix for each in maps)])
     constants = np.stack([most, *(side * each.constant for each in maps)])
@@ -175,10 +172,7 @@ def steady_cycle(after: After, start: State) -> tuple[State, npt.NDArray[np.bool
 
 
 def bound(afters: Sequence[After], known: Sequence[State], warm: bool) -> State:
-    """Return states that are warmer (or colder) than those before any play of a sequence in any order.
-
-    `known` are those before a first play of each drive, and before each play of its own repetition.
-    """
+    """States warmer (or colder) than before any play in any order; `known`: before first plays and in steady cycles."""
     side, start = 1.0 if warm else -1.0, known[0]
     now = np.max([side * state.nodes_C for state in known], axis=0)
     before = np.zeros(len(now))

@@ -171,10 +171,7 @@ def pause_rows(pause_s: float) -> Array:
 
 
 def shortest_pause_s(repeating: Repeating[Played, States]) -> float | None:
-    """The shortest pause in s, in steps of 0.1 s, with which no hard limit is passed; None up to 10 min.
-
-    Searched in the corners that are worst without a pause, and checked in all; any that exceed a limit join the search.
-    """
+    """The shortest safe pause in s, to 0.1 s; None up to 10 min. Searched in the worst corners, and checked in all."""
     tallies = [tally for drive_tallies in repeating.tallies(0.0) for tally in drive_tallies]
     if all(tally.passes() for tally in tallies):
         return 0.0

@@ -103,10 +103,7 @@ class SessionPlan:
 
 
 def read_order(path: str | Path, icons: IconSet) -> tuple[str, ...]:
-    """The icon names of an order file: one per line or separated by commas; # begins a comment.
-
-    Raises SessionError for a file that cannot be read or holds no name, and for one not in the set, with line and cure.
-    """
+    """Names in an order file, by lines or commas, # begins a comment; SessionError for what is not in the set."""
     where = Path(path)
     names: list[str] = []
     known: set[str] = set()

@@ -66,11 +66,8 @@ class SessionDrive:
 
 
 def drive_of(plan: SessionPlan, icons: Mapping[str, Icon], rig: Rig, tracking: str = "replay") -> SessionDrive:
-    """The one drive of a session; `icons` has every name of the plan.
-
-    Every icon starts at the first update of the driver at or after the end of its gap. The current of each is designed
-    from rest, and its own resting current flows until the next one starts; with `display` the driver follows each
-    icon's display temperature and holds the display at the icon's baseline in the gaps.
+    """The one drive of a session, by each icon's own current from rest, or by all display temperatures; icons start at
+    the first update of the driver after their gap.
     """
     if tracking not in TRACKINGS:
         raise SessionError(f"tracking {tracking!r} is not known; it is one of {', '.join(TRACKINGS)}")
@@ -169,10 +166,7 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True, slots=True)
 class WorstCase(Judged):
-    """Every rule in its worst scenario, and the number of scenarios.
-
-    `recovery_s` counts from the end of the session, with the resting current held; None where it exceeds 10 min.
-    """
+    """Every rule in its worst scenario, how many there are, and the recovery after the end in s; None: over 10 min."""
 
     checks: tuple[Check, ...]
     scenarios: int
@@ -286,10 +280,7 @@ def _plays(plan: SessionPlan, played: SessionDrive, trace: Trace, limits: Limits
 def worst_case_of(
     blocks: Sequence[SessionDrive], rig: Rig, limits: Limits, progress: Progress | None = None
 ) -> WorstCase:
-    """Check blocks of a session in all corners, each from rest and with what may follow it; doses add up over them.
-
-    Times run on from block to block, breaks left out; `recovery_s` is that after the last block.
-    """
+    """Check blocks of a session in all corners, each from rest; doses add up over them, times run on without breaks."""
     plays = [CurrentPlay(played.drive, played.rest_A) for played in blocks]
     total_s = round(sum(play.end_s for play in plays))
 

@@ -44,10 +44,7 @@ STUCK_SHARES = (1.0, 0.5, 0.25)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Moments:
-    """Instants of a play and its pause: in lanes, those of one instant side by side, with a command in A each.
-
-    `stuck_A` is the driver's limit.
-    """
+    """Instants of a play and its pause in lanes, with a command in A each; `stuck_A`: of a driver at its limit."""
 
     state: State
     command_A: Array
@@ -170,9 +167,7 @@ class Faulty:
         hangs: bool = False,
         shares: tuple[float, ...] = (1.0,),
     ) -> tuple[CutOff, SingleFault]:
-        """A cut-off at both ends, with its reaction time for a driver at `shares` of its limit, and the effect of that;
-        with `hangs` also for a current that hangs.
-        """
+        """A cut-off at both ends and its effect, for a driver at `shares` of its limit, or a current that hangs."""
         low, high = ends_C
         moments, harms, slowest = moments or self.moments(), [], REACTIONS_S[-1]
         for current_A in (share * full_A for full_A in self.ends_A for share in shares):
@@ -233,9 +228,7 @@ def instants(
 
 
 def stuck_at(drive: Drive) -> list[tuple[float, float]]:
-    """Instants in s with the command that is stuck there, the one before a change: in each stretch of a drive at its
-    end, and at the ends of its extremes.
-    """
+    """Instants in s and commands that are stuck there: at the end of each stretch and after its extremes."""
     times = drive.time_s[1:]
     if len(times) < INSTANTS:
         times = np.union1d(times, np.linspace(0.0, times[-1], INSTANTS + 1)[1:])

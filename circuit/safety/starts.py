@@ -74,9 +74,7 @@ class Beginning(Generic[Played, States]):
         return Starts(rest_s, (next(joined), next(joined)))
 
     def kept_s(self, starts: Starts[States], pause_s: float) -> float | None:
-        """The rest in s after which no play passes a hard limit that begins between the starts, or right after the rest
-        on a display without power; None where even the longest is too short.
-        """
+        """The rest in s after which no play that may begin passes a hard limit; None where the longest is too short."""
         drives, rest_s = self.repeating.drives, starts.rest_s
         ends = zip((Before("warm", pause_s), Before("cold", pause_s)), starts.bounds, strict=True)
         between = (

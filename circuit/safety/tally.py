@@ -11,14 +11,13 @@ from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib import resources
 from math import isnan
 
 import numpy as np
 import numpy.typing as npt
 
 from ..arrays import Array, Index
-from ..records import load_records
+from ..records import shipped_records
 from ..rig.rules import Limits, Rule
 from .checks import AS_TOLD, LEVEL, Check, Scenario
 from .corners import Corner
@@ -29,8 +28,7 @@ _KEPT = ("CEM43 start", "CEM43 reference", "CEM43 base at or above 43 °C", "CEM
 @cache
 def constants() -> Array:
     """Constants of both measures in the order that the kernels expect (6,)."""
-    table = load_records(resources.files("thermicon.circuit") / "data" / "exposure.toml")
-    known = {record.quantity: record.central for record in table}
+    known = {record.quantity: record.central for record in shipped_records("exposure.toml")}
     factor, activation_K = (
         known["Henriques pre-exponential"],
         known["Henriques activation energy"] / known["gas constant"],
@@ -158,8 +156,7 @@ class Tally:
     def add(self, time_s: Array, watched: Array, *, rates: bool = True, sums: bool = True, drift: bool = False) -> None:
         """Add WATCHED (4, lanes, rows) in °C at times in s (rows,), which continue those before.
 
-        Without `rates` no rate is taken over these rows, and without `sums` nothing is summed over them, since they are
-        states far apart. A `drift` is not a stimulus: only hard limits apply, and changes do not count.
+        Without `rates` or `sums`, rows are too far apart for them; in a `drift`, no stimulus, only hard limits apply.
         """
         from .tally_kernel import count
 

@@ -209,14 +209,14 @@ class _Stage:
         if (corners := corners_of(displays)) is None:
             return None
         bank, update_Hz, start = self.bank, self.nominal.driver.update_Hz, self.bank.states(states)
-        result = superposed(bank, displays, corners, start, self.probes, 1.0 / update_Hz, self.rows)
-        if (near := np.flatnonzero(~result.fine)).size:
+        values, fine = superposed(bank, displays, corners, start, self.probes, 1.0 / update_Hz, self.rows)
+        if (near := np.flatnonzero(~fine)).size:
             rig_of, cue_of = (places[near] for places in self._lanes(len(targets)))
             lanes = np.arange(len(near))
             currents = run_follow(bank, rig_of, cue_of, 1.0 / update_Hz, targets, False, start[near])[0]
             intervals = self._held(currents)
-            result.values[:, near] = run_forward(bank, rig_of, lanes, intervals, start[near], self.probes)
-        return result.values.reshape(len(self.probes), len(self.rigs), len(targets), len(self.rows))
+            values[:, near] = run_forward(bank, rig_of, lanes, intervals, start[near], self.probes)
+        return values.reshape(len(self.probes), len(self.rigs), len(targets), len(self.rows))
 
     def _held(self, currents: Array) -> Intervals:
         """Time cut for currents (…, periods) held over the driver's periods."""

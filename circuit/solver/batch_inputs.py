@@ -117,10 +117,7 @@ def run_forward(
     bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: Array, probes: Sequence[str] = RECORDED,
     extra: tuple[Index, Array] | None = None,
 ) -> Array:  # fmt: skip
-    """Return the probes (probes, lanes, rows) of every lane; from `state` (lanes, nodes).
-
-    `extra` adds further readings after them, the same states and weights for every rig: starts (k,), weights (k, 3).
-    """
+    """Probes (probes, lanes, rows) of lanes from `state` (lanes, nodes), then `extra`: starts (k,), weights (k, 3)."""
     return run_on(bank, rig_of, cue_of, intervals, State.settled(state), probes, extra)[0]
 
 

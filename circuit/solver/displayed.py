@@ -52,11 +52,9 @@ def refuse_current(icon: Icon, who: str) -> None:
 
 
 def design_display(icon: Icon, rig: Rig, end_s: float, finest_s: float = FINEST_S) -> DisplayDesign:
-    """The set-points and display of a thermode for a cue until `end_s`; RigError for current, or a baseline out of
-    range.
+    """Set-points and display of a thermode for a cue; RigError for a current, or a baseline out of range.
 
-    Corners of a prescribed display are rounded to the resolution; the display for a prescribed skin is not, as a
-    thermode draws it in segments that stay within half a step.
+    Corners of a display are rounded to the resolution; what a skin needs is not, as it is drawn in segments.
     """
     refuse_current(icon, f"rig {rig.name}")
     thermode, modes, base = _thermode(rig), modes_of(rig), baseline_C(icon, rig)
@@ -84,11 +82,7 @@ def judge_display(
     icon: Icon, modes: SkinModes, base: float, step_s: float, prompt_C: Array, limits_C: tuple[float, float],
     slew_K_per_s: float,
 ) -> Outcome:  # fmt: skip
-    """Return the outcome of a display (rows,) without lag, judged where the cue prescribes: on the display or the skin.
-
-    Held back by the range of the thermode where the display touches one of its ends, by its ramp rate where it goes as
-    fast as that.
-    """
+    """The outcome of a display (rows,) without lag, where the cue prescribes it; held back by range or ramp rate."""
     times: Array = np.arange(len(prompt_C), dtype=np.float64) * step_s
     target, reached = target_at(icon, base, times), prompt_C
     if icon.context.control == "skin":
@@ -116,10 +110,7 @@ def trace_of_display(
     rig: Rig, step_s: float, display_C: Array, rows: Array, *, icon: str | None, control: str, target_C: Array,
     outcome: Outcome | None,
 ) -> Trace:  # fmt: skip
-    """Return the trace at rows of a display (steps,), held before at its first level.
-
-    There is no current, so that current, voltage and hot plate are NaN: empty in files, null in JSON.
-    """
+    """The trace at rows of a display (steps,), held before at its first level; without current, which is NaN."""
     own_probes = readings_of(rig)
     modes = modes_of(rig) if own_probes is None else modes_on(skin_network_of(rig), readings=own_probes)
     values, _ = modes.run(display_C, step_s, modes.steady(float(display_C[0])))
@@ -152,11 +143,7 @@ def trace_of_display(
 def displays_on(
     icons: Sequence[Icon], rigs: Sequence[Rig], nominal: Rig, rows: Array, tracking: str | None, probes: Sequence[str]
 ) -> Array:
-    """Return probes (probes, rigs, icons, rows) of cues on thermode rigs.
-
-    The display is the one designed on the nominal rig, since a thermode shows the same to everybody; under `ideal`
-    tracking a skin-controlled cue gets one for each rig. What a thermode does not have (`hot_plate_C`) is NaN.
-    """
+    """Probes (probes, rigs, icons, rows) under one thermode: the nominal rig's display, or with `ideal` each skin's."""
     if nominal.thermode is None or any(rig.thermode != nominal.thermode for rig in rigs):
         raise RigError("rigs of one batch must have the same thermode, or none")
     felt = [place for place, probe in enumerate(probes) if probe in FELT]

@@ -190,11 +190,7 @@ def duty_of(
 
 
 def switched(duty: Array, rate_Hz: float, carrier_Hz: float, peak_A: float) -> Drive:
-    """The current of a bridge that holds duties (n + 1,) for one update each, the last for none; cycles begin with the
-    on-time.
-
-    A carrier above SIMULATED_CARRIER_HZ is simulated slower, at or below it.
-    """
+    """A bridge's current for duties (n + 1,) of an update each, the last for none; fast carriers are slowed down."""
     cycles = round(min(carrier_Hz, max(rate_Hz, SIMULATED_CARRIER_HZ)) / rate_Hz)
     share = np.repeat(duty[:-1], cycles)
     begin = np.arange(len(share)) / (cycles * rate_Hz)

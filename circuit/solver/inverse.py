@@ -53,10 +53,7 @@ def target_at(icon: Icon, start: float, times_s: Array) -> Array:
 
 
 def steps_at(icon: Icon, start: float) -> tuple[tuple[float, float], ...]:
-    """Times in s at which a cue steps, and by which the rig must have arrived.
-
-    That is the end of the hold after the step, or the next step where a ramp follows at once: the rig may catch up.
-    """
+    """When a cue steps, in s, and by when it must have arrived: the end of the hold behind, or the next step."""
     corners, steps = icon.corners(start), []
     times, levels = corners.time_s, corners.value
     begins = [times[place] for place in corners.steps]
@@ -117,10 +114,7 @@ def design_ideal(icon: Icon, rig: Rig, end_s: float) -> Design:
 
 
 def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, ...]:
-    """The designs of many cues on one rig until a common end, each as `design` gives it, in parallel on all cores.
-
-    Cues that prescribe current, and rigs with a control loop, are designed one by one.
-    """
+    """Designs of many cues on one rig, as `design` gives each; side by side, but for current control and loops."""
     designs: dict[int, Design] = {}
     for control in ("skin", "display") if rig.controller is None else ():
         cues = [icon for icon in icons if icon.context.control == control]
@@ -154,11 +148,7 @@ def gains_of(rig: Rig) -> tuple[float, float, float, float, float]:
 
 
 def close_loop(rig: Rig, plan: Design, icon: Icon, target: Array) -> Design:
-    """The currents of the rig's own PID loop for a cue, whose set-point is the cue's display temperature.
-
-    Under skin control that is the display of the ideal inverse `plan`, since the loop sees the display alone; the
-    outcome still judges what the cue prescribes.
-    """
+    """The currents of the rig's own PID loop for a cue, whose set-point is its display, or that of the ideal `plan`."""
     bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
     period, control, base = 1.0 / rig.driver.update_Hz, icon.context.control, baseline_C(icon, rig)
     setpoint = _along(rig, plan, "display_C")[:-1] if control == "skin" else np.concatenate([[base], target[:-1]])

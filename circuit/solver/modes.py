@@ -61,10 +61,7 @@ class ConstantCurrent:
 
     @staticmethod
     def of(networks: Sequence[Network], mean_A: Array, square_A2: Array) -> ConstantCurrent:
-        """Modes of networks with equally many lumps and sinks of one kind; mean current and mean square of it (r,).
-
-        A bridge that switches heats with the mean square, which is larger than the square of the mean.
-        """
+        """Modes of networks of one size; mean current and mean square (r,), by which a bridge that switches heats."""
         plates = np.array([network.plates for network in networks])
         alpha, ohm, leak, hot_J, cold_J, sink, out, deep = plates[:, :8].T
         capacity = np.column_stack([hot_J, cold_J, [network.capacity_J_per_K for network in networks]])
@@ -267,8 +264,7 @@ class SkinModes:
     def display_holding_skin_C(self, skin_C: float) -> float:
         """Temperature of the display in °C that holds the face of the skin at one in steady state."""
         row = FELT.index("skin_C")
-        per_K = float(self.reading[row] @ (self.drive_per_s / self.rate_per_s) + self.direct[row])
-        return self.deep_C + (skin_C - float(self.offset_C[row])) / per_K
+        return self.deep_C + (skin_C - float(self.offset_C[row])) / self.per_K(row)
 
 
 @lru_cache(maxsize=256)
@@ -335,9 +331,7 @@ def _modes(
 
 
 def shown(setpoint_C: Array, step_s: float, lag_s: float = 0.0, slew_K_per_s: float = np.inf) -> Array:
-    """The display (rows,) in °C of a thermode that follows set-points (rows,), `step_s` apart, from rest: with a first-
-    order lag, exact for set-points that are linear between rows, and no faster than its slew rate.
-    """
+    """The display (rows,) in °C that follows set-points from rest: first-order lag, exact for lines, and slew rate."""
     most = slew_K_per_s * step_s
     if lag_s <= 0 and np.abs(np.diff(setpoint_C)).max(initial=0.0) <= most:
         return setpoint_C.copy()

@@ -61,14 +61,16 @@ def _column(network: Network) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=512)
 def state_under_current(network: Network, current_A: float, in_the_end: bool = False) -> Array:
-    """Steady state (nodes,) in °C, read-only, under a constant current; ArithmeticError where it would heat without
-    limit.
-    """
+    """Steady state (nodes,) in °C, read-only, under a current; ArithmeticError where it would heat without limit."""
     plates, (z, e) = _plates(network, in_the_end), _column(network)
     cold, hot = _balance(plates, current_A, float(network.conductance_W_per_K[0]), z[0], e[0])
-    state = _fill(network, cold, hot, z, e)
+    state = np.empty(network.nodes)
+    state[HOT], state[COLD], state[-1] = hot, cold, network.deep_C
+    for i in range(len(z)):
+        state[SKIN + i] = z[i] + e[i] * state[COLD + i]
     if network.passive:
-        state[-2] = sink_under(network, hot, in_the_end)
+        *_, sink, out = plates
+        state[-2] = hot - out * (hot - sink) / float(network.plates[SINK_W_PER_K])
     state.setflags(write=False)
     return state
 
@@ -85,20 +87,6 @@ def _balance(
         raise ArithmeticError(f"{current_A:g} A has no steady state on this rig: it heats without limit")
     cold = (leak * zero - alpha * current_A * ZERO_C_IN_K + 0.5 * ohm * current_A**2 + skin * z) / diagonal
     return cold, zero + per_cold * cold
-
-
-def sink_under(network: Network, hot: float, in_the_end: bool = False) -> float:
-    """A passive heat sink in °C, in steady state under the hot plate."""
-    *_, sink, out = _plates(network, in_the_end)
-    return hot - out * (hot - sink) / float(network.plates[SINK_W_PER_K])
-
-
-def _fill(network: Network, cold: float, hot: float, z: Array, e: Array) -> Array:
-    state = np.empty(network.nodes)
-    state[HOT], state[COLD], state[-1] = hot, cold, network.deep_C
-    for i in range(len(z)):
-        state[SKIN + i] = z[i] + e[i] * state[COLD + i]
-    return state
 
 
 def holding_current_A(network: Network, control: str, level_C: float) -> float:
@@ -166,10 +154,7 @@ def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
 
 
 def steady_of(rig: Rig, duty: float, peak_A: float) -> Array:
-    """Return the steady state in °C of a constant duty, without the ripple.
-
-    The mean current is D·Ip and the mean of its square 1/D times the square of that, as if the resistance were R/D.
-    """
+    """Steady state in °C of a duty D without ripple: the mean square of the current is D·Ip², as if R were R/D."""
     network = network_of(rig)
     if duty == 0:
         return state_under_current(network, 0.0)

@@ -6,7 +6,6 @@ the full solution, which is also what the tests compare with (0.5 mK at the rece
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -27,14 +26,6 @@ SAME_K = 1e-9
 
 LONGEST_PERIOD_S = 0.01
 """With a longer period the display is not linear between its ends."""
-
-
-@dataclass(frozen=True, slots=True)
-class Superposed:
-    """Readings (readings, lanes, rows) of lanes, and whether each lane (lanes,) is far from every limit."""
-
-    values: Array
-    fine: npt.NDArray[np.bool_]
 
 
 def is_linear(rigs: Sequence[Rig], nominal: Rig, probes: Sequence[str], rows_s: Array) -> bool:
@@ -67,10 +58,9 @@ def corners_of(display_C: Array) -> tuple[Index, Array] | None:
 def superposed(
     bank: Bank, display_C: Array, corners: tuple[Index, Array], states: Array, probes: Sequence[str], period_s: float,
     rows_s: Array,
-) -> Superposed:  # fmt: skip
-    """Return the readings of every rig under every display (cues, periods + 1), all cues of a rig together.
-
-    `states` (rigs · cues, nodes) are the steady ones at the start; rows (rows,) in s lie at ends of periods.
+) -> tuple[Array, npt.NDArray[np.bool_]]:  # fmt: skip
+    """Readings (readings, lanes, rows) of rigs under displays (cues, periods + 1) from steady states, rig by rig;
+    and whether each lane (lanes,) is far from every limit.
     """
     from . import kernel_modes as kernel
 
@@ -104,4 +94,4 @@ def superposed(
         kernel.playable(part, rig_of, cue_of, display_C, flow, hot_C, bank.plates, period_s, fine)
 
     on_all_cores(add, lane)
-    return Superposed(out, fine)
+    return out, fine

@@ -270,11 +270,7 @@ def judge(
     limits: tuple[tuple[str, float], ...],
     steps_s: tuple[tuple[float, float], ...] = (),
 ) -> Outcome:
-    """The outcome of targets and reached temperatures (periods,), both at the end of each driver period.
-
-    `steps_s`: when steps begin, and until when each must have arrived; one with less than 2 s left at the end is not
-    late.
-    """
+    """Outcome of targets and temperatures (periods,) at ends of periods; `steps_s`: when steps begin, and must end."""
     miss = reached_C - target_C
     close, counted = np.abs(miss) <= CLOSE_K, np.ones(len(miss), dtype=bool)
     ends, took, late = period_s * np.arange(1, len(miss) + 1), 0.0, []

@@ -6,9 +6,8 @@ from collections.abc import Iterator
 
 from table_text import markdown
 
-from thermicon.circuit.records import Record
+from thermicon.circuit.records import Record, shipped_records
 from thermicon.circuit.rig.rules import limit_table
-from thermicon.circuit.rig.uncertainty import uncertainty_table
 from thermicon.icons.files.catalogue import catalogue
 from thermicon.icons.number_text import signed
 
@@ -57,7 +56,7 @@ def uncertainties_table() -> str:
     """A row for each shipped uncertainty of a rig."""
     rows = [
         (f"`{one.quantity}`", f"±{one.central:g}{'' if one.unit == '1' else f' {one.unit}'}", one.source)
-        for one in uncertainty_table()
+        for one in shipped_records("uncertainty.toml")
     ]
     return markdown(("`[uncertainty]`", "shipped", "source"), rows)
 

@@ -162,11 +162,7 @@ def sources(icons: IconSet) -> tuple[Source, ...]:
 
 
 def cited(icons: IconSet) -> list[Reference]:
-    """Return the publications of the bibliography that a set cites.
-
-    A DOI names a publication; so do the first author's last name and a year in ``by``, or, without a year, the first
-    two last names.
-    """
+    """Publications that a set cites: by a DOI, or in ``by`` a first name with a year, or two first last names."""
     found: dict[str, Reference] = {}
     for by, doi in sources(icons):
         if doi is not None:

@@ -109,10 +109,7 @@ class Named:
 
 
 def named(cells: Sequence[str], names: Iterable[str], theirs: Mapping[str, str]) -> Named:
-    """Read a header: names that are ours stay, those that ``theirs`` gives for ours, and those that mean one of ours.
-
-    Where two cells may be the same, none is taken, but one whose unit is said goes before others.
-    """
+    """Read a header: ours, what ``theirs`` gives, what means one of ours; of two that may, the one with a unit."""
     renamed, doubtful = dict[str, tuple[str, Unit]](), dict[str, tuple[str, ...]]()
     places = {name: [(cells.index(own), parted(own)[1])] for name, own in theirs.items() if own in cells}
     new, said = [f"({cell})" if cell in places else cell for cell in cells], set(places)

@@ -64,10 +64,7 @@ def read_limited(path: Path, most_bytes: int) -> bytes:
 
 
 def bytes_of(path: Path, what: str, suffix: str, most_bytes: int, smaller: str) -> bytes | None:
-    """Return what is in a file of icons, or None when none has this name; raises CueErrors as `whole_file` makes them.
-
-    `what` it holds, the `suffix` of its name, and what makes it `smaller` are for the messages.
-    """
+    """What is in a file of icons, or None without one of this name; CueErrors in words of `what` it should hold."""
     try:
         return read_limited(path, most_bytes)
     except NotRegular as found:
@@ -176,10 +173,7 @@ def library_names() -> tuple[str, ...]:
 
 
 def beside(path: str | Path, ending: str = "") -> str:
-    """The file that may have been meant by one that is missing: of the same folder and ending, with a similar name.
-
-    `ending` is that of a name without one. Empty where there is none.
-    """
+    """A file of the same folder and ending with a similar name, which may have been meant; empty without one."""
     wanted = Path(path)
     try:
         there = [each for each in islice(wanted.parent.iterdir(), MOST_LOOKED_AT) if not each.name.startswith(".")]
@@ -285,10 +279,7 @@ def read_cue(source: str | Path) -> IconSet:
 
 
 def file_bytes(source: str | Path) -> bytes | None:
-    """Return what is in a file, or None when there is not one of this name.
-
-    Raises CueErrors when it is a folder (but not one with the name of a shipped set), unreadable or too large.
-    """
+    """Return what is in a file, or None when none has this name; CueErrors for a folder, or what cannot be read."""
     name = str(source)
     path = Path(source)
     if "\0" in name or (name in library_names() and path.is_dir()):

@@ -85,10 +85,7 @@ class Table:
             yield line, dict(zip(there, cells, strict=True))
 
     def numbers(self, name: str, cure: str, gaps: Counter[str] | None = None) -> NDArray[np.float64]:
-        """Return a column (rows,) of finite numbers; raises a fault, with the ``cure``, otherwise.
-
-        With ``gaps``, empty cells and what loggers write for a missing number are NaN, and counted there.
-        """
+        """A column (rows,) of finite numbers, or faults with a ``cure``; ``gaps`` counts what is NaN in its place."""
         import numpy as np
 
         with suppress(ValueError):  # a column of plain numbers, as most are, is read at once

@@ -41,10 +41,7 @@ TEMPERATURES = (
 
 
 def errors(values: Array, possible: tuple[float, float], widest: tuple[float, float] = SENSED_C) -> NDArray[np.bool_]:
-    """Readings that no sensor took, such as −127, 85 or 999 among others: none where they are many.
-
-    They are beyond the widest range, or beyond what is possible by a jump from and to their neighbours.
-    """
+    """Readings that no sensor took, beyond the widest range, or by a jump beyond what is possible; none where many."""
     import numpy as np
 
     beyond = (values < widest[0]) | (values > widest[1])

@@ -6,7 +6,7 @@ from fractions import Fraction
 from math import prod
 from typing import Any, cast
 
-from ..model.check import ASSUMED_BASELINE_C, MOST_CORNERS, Problem, corner_count, problems
+from ..model.check import ASSUMED_BASELINE_C, MOST_CORNERS, Problem, corner_count, survey
 from ..model.context import Context, Metadata
 from ..model.errors import MOST_ERRORS
 from ..model.family import FEWER, MOST_MEMBERS, Family
@@ -40,8 +40,7 @@ class Analysis:
 
 def analyse(source: Source) -> Analysis:
     """Parse and check a source; never raises."""
-    reading = read(source)
-    return _Assembler(source).run(reading.tree, reading.findings, reading.more)
+    return _Assembler(source).run(*read(source))
 
 
 class _Assembler:
@@ -241,7 +240,7 @@ class _Assembler:
         self.return_slots(draft)
         if draft.over is not None:
             return self.family(draft, before)
-        for problem in problems(draft.body, self.control, self.rest()):
+        for problem in survey(draft.body, self.control, self.rest()).problems:
             self.add(problem, draft)
         if len(self.builder.findings) > before or self.unsound(draft):
             return None

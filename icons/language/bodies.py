@@ -56,10 +56,7 @@ Resolve = Callable[[str, Place], Icon | None]
 
 @dataclass(frozen=True, slots=True)
 class IconDraft:
-    """An icon or family as written: name (None when unreadable), its place, metadata, statements.
-
-    ``over`` holds the parameters of a family, and is None for an icon; ``slots`` says where they stand in the body.
-    """
+    """An icon or family as written; ``over`` are the parameters of a family, ``slots`` where they stand in it."""
 
     name: str | None
     place: Place
@@ -70,10 +67,7 @@ class IconDraft:
 
 
 def icon_draft(builder: Builder, tree: Any, resolve: Resolve) -> IconDraft:
-    """Return an icon or a family from its tree; an empty one is a finding.
-
-    ``resolve`` finds the icon that a ``play`` names, or adds a finding and returns None.
-    """
+    """Return an icon or family from its tree; ``resolve`` finds the icon that a ``play`` names, or adds a finding."""
     head, *parts = tree.children
     name = str(head) if head.type == "NAME" else None
     keys = [part for part in parts if rule_of(part) == "metadata"]

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cache, lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING, Any
@@ -36,17 +35,8 @@ _FORMATS = {
 _HEADER = re.compile(r"(icon|set)\b[^\n;{}]*\{")
 
 
-@dataclass(frozen=True, slots=True)
-class Reading:
-    """A tree with BROKEN in place of what could not be read, the errors by offset, and how many more there were."""
-
-    tree: "Tree[Any]"
-    findings: tuple[Finding, ...]
-    more: int
-
-
-def read(source: Source) -> Reading:
-    """Parse a source; never raises, whatever the text."""
+def read(source: Source) -> tuple["Tree[Any]", tuple[Finding, ...], int]:
+    """The tree of a source, with BROKEN for what could not be read, the errors by offset, and how many more."""
     return _Reader(source).run()
 
 
@@ -91,7 +81,7 @@ class _Reader:
         self.parser: Any = grammar().parse_interactive(source.text)
         self.tokens: Iterator[Token] = iter(())
 
-    def run(self) -> Reading:
+    def run(self) -> tuple["Tree[Any]", tuple[Finding, ...], int]:
         from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 
         self.jump(0)
@@ -117,7 +107,7 @@ class _Reader:
                     self.follow(token.type, start)
                     self.collect(token)
         self.finish()
-        return Reading(self.parser.feed_eof(), tuple(self.findings), self.more)
+        return self.parser.feed_eof(), tuple(self.findings), self.more
 
     # -- following the text ---------------------------------------------------------------------------------------
 

@@ -109,11 +109,9 @@ class Source:
         )
 
     def pieces(self, start: int, after: int, listing: bool = False, braces: bool = False) -> list[Piece]:
-        """Cut the text from ``start`` into pieces, without spaces, comments and newlines.
+        """Cut the text into pieces up to a newline, ``;`` or brace from ``after`` on, and at most 50 behind it.
 
-        They end with the first newline, ``;`` or brace at or behind ``after``, and at most 50 pieces behind it.
-        ``listing`` cuts finer, as needed between the parentheses of a family, and goes on over newlines and ``;``;
-        ``braces`` takes a pair of them at ``after`` for a list of values.
+        ``listing`` cuts finer and goes on over line ends; ``braces``: a pair of them at ``after`` holds values.
         """
         found: list[Piece] = []
         behind = 0

@@ -35,10 +35,7 @@ _STEEPNESS: dict[Shape, float] = {"sine": 2 * math.pi, "triangle": 4.0, "sawtoot
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One problem: the statement (None for the icon), which part of it, and what is wrong.
-
-    ``cures`` holds pairs of a part and the text to put in its place, ``off_s`` by how much a total is not kept.
-    """
+    """One problem: statement (None: the icon), part, what is wrong, cures by part, and how far a total is off in s."""
 
     statement: Statement | None
     code: str
@@ -76,18 +73,10 @@ def corner_count(body: Sequence[Statement | Broken], known: dict[int, int] | Non
     return count
 
 
-def problems(body: Sequence[Statement | Broken], control: Control, rest: Fraction | None) -> list[Problem]:
-    """Return the problems of a body that starts at the level ``rest`` (°C or A; None when that is not known)."""
-    return survey(body, control, rest).problems
-
-
 def survey(
     body: Sequence[Statement | Broken], control: Control, rest: Fraction | None, played: Played | None = None
 ) -> Survey:
-    """Return what a body that starts at the level ``rest`` (°C or A; None when that is not known) does.
-
-    ``played`` keeps end and duration of the icons that are played, for further bodies that play them.
-    """
+    """What a body does from the level ``rest`` (None: not known) on; ``played`` keeps what played icons do."""
     if (corners := corner_count(body)) > MOST_CORNERS:
         worst = max(
             (part for part in body if isinstance(part, Repeat | Wave | Play)),

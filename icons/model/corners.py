@@ -148,9 +148,8 @@ def corners(body: Sequence[Statement], start: Fraction, quantity: Quantity, tole
 
 
 def _spread(times: list[Fraction], levels: list[Fraction], quantity: Quantity) -> Corners:
-    """Corners with the two ends of every step drawn apart: the later end moves, or the earlier at the very end.
-
-    Neither passes its neighbour: beside a piece that is shorter than the step, a step is shorter still.
+    """Corners with the ends of every step drawn apart, by less than a neighbour: the later end moves, or at the end the
+    earlier.
     """
     apart = Fraction(STEP_S).limit_denominator(10**9)
     steps = [n for n, (a, b) in enumerate(pairwise(times)) if a == b]

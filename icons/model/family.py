@@ -10,7 +10,7 @@ from ..drawn import Drawn
 from .context import Context, Metadata, name_fault
 from .icon import Icon, rest_level
 from .members import HOLE, Expander, Summary, check_family
-from .parameter import Parameter, Slot, in_order, slot_fault
+from .parameter import Parameter, Slot, slot_fault
 from .statements import Statement
 
 MOST_MEMBERS = 100_000
@@ -70,7 +70,7 @@ class Family(Drawn):
     def __post_init__(self) -> None:
         for name in ("parameters", "template"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
-        object.__setattr__(self, "slots", in_order(self.slots))
+        object.__setattr__(self, "slots", tuple(sorted(self.slots, key=lambda slot: (slot.path, slot.field))))
         wrong = name_fault(self.name) or ("a member's name is no family's name" if "_" in self.name else None)
         if wrong:
             raise ValueError(f"family: {wrong}")

@@ -27,10 +27,7 @@ WIDEST = 120
 def statement_text(
     statement: Statement | Broken, control: Control, indent: str = "", holes: Holes | None = None, path: Path = ()
 ) -> str:
-    """Return one statement as cue text, without a newline at its end; repeats take several lines.
-
-    ``holes`` names the parameter that stands in a field of the statement at a path; ``path`` is this statement's.
-    """
+    """One statement as cue text without a newline at its end; ``holes`` names parameters by path and field."""
     writer = _Writer(control, holes or {})
     return writer.statement(statement, indent, path)
 

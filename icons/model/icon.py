@@ -9,7 +9,7 @@ from typing import Self
 
 from ..drawn import Drawn
 from .arguments import checked
-from .check import ASSUMED_BASELINE_C, Problem, problems
+from .check import ASSUMED_BASELINE_C, Problem, survey
 from .context import Context, Metadata, name_fault
 from .corners import Corners, Quantity, corners
 from .errors import CueError, CueErrors
@@ -125,7 +125,7 @@ class Icon(Drawn):
         )
 
     def _prove(self, level: Fraction) -> None:
-        found = problems(self.statements, self.context.control, level)
+        found = survey(self.statements, self.context.control, level).problems
         if found:
             raise CueErrors(tuple(problem_error(problem, self.name, self.context) for problem in found))
 

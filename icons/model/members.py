@@ -125,10 +125,7 @@ class Summary:
 
 @dataclass(frozen=True, slots=True)
 class FailedMember:
-    """The first member of a family that cannot be played, what is wrong with it, and how many members fail.
-
-    ``failing`` counts up to ``MOST_FAILING``.
-    """
+    """The first member of a family that cannot be played, its problem, and how many fail, up to ``MOST_FAILING``."""
 
     name: str
     statements: tuple[Statement, ...]
@@ -149,10 +146,7 @@ class MemberErrors(CueErrors):
 
 
 def check_family(members: Expander, context: Context, start: float | None = None) -> Summary:
-    """Return the summary over all members; MemberErrors when one of them cannot be played.
-
-    ``start`` (°C, or A under control current) is the baseline when the context gives none.
-    """
+    """The summary over all members from a baseline or ``start``; MemberErrors when one cannot be played."""
     rest = rest_level(context, start)
     summary: Summary | None = None
     first: FailedMember | None = None

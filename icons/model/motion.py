@@ -57,10 +57,7 @@ def advance(leaf: Leaf, level: Fraction, rest: Fraction) -> tuple[Fraction, Frac
 
 
 def pieces(leaf: Leaf, level: Fraction, rest: Fraction, tolerance: float = TOLERANCE) -> Iterator[Point]:
-    """Yield level and duration of the straight pieces of a statement; a duration of 0 is a step.
-
-    ``tolerance`` (K or A) bounds the distance to a sine.
-    """
+    """Yield level and duration of straight pieces, a sine within ``tolerance`` (K or A); a duration of 0 is a step."""
     if isinstance(leaf, Pulse):
         target = _target(leaf, level)
         yield target, Fraction(0)
@@ -111,10 +108,7 @@ def whole_periods(wave: Wave) -> bool:
 
 @lru_cache(maxsize=256)
 def one_period(shape: Shape, ratio: float) -> tuple[Point, ...]:
-    """Return phase (0–1) and value (±1) of the corners of one period that starts upwards; equal phases are a step.
-
-    ``ratio`` is the tolerance over the amplitude; only a sine needs it.
-    """
+    """Phase (0–1) and value (±1) of the corners of a rising period; ``ratio`` is a sine's tolerance over amplitude."""
     half, quarter, one, zero = Fraction(1, 2), Fraction(1, 4), Fraction(1), Fraction(0)
     if shape == "triangle":
         return (zero, zero), (quarter, one), (3 * quarter, -one), (one, zero)

@@ -1,6 +1,6 @@
 """A parameter of a family: its name, unit and values, listed or counted out; and where in the statements it stands."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -59,8 +59,7 @@ class Parameter:
     def _numbers(self) -> tuple[tuple[int, ...], int, int]:
         # Whole numbers over one power of ten: dividing two whole numbers gives the float nearest to the decimal.
         parts = [exact_number(decimal_text(value)) for value in self.span or self.listed]
-        scale = max(part.denominator for part in parts)
-        power = next(10**n for n in range(1100) if all((part * 10**n).denominator == 1 for part in parts)) or scale
+        power = next(10**n for n in range(1100) if all((part * 10**n).denominator == 1 for part in parts))
         whole = tuple(int(part * power) for part in parts)
         count = len(whole) if self.span is None else (whole[1] - whole[0]) // whole[2] + 1
         return whole, power, count
@@ -89,10 +88,6 @@ class Parameter:
     def text(self, place: int) -> str:
         """Return the value at a place as decimal text, without its unit."""
         return decimal_text(self.value(place))
-
-    def texts(self) -> tuple[str, ...]:
-        """Return all values as decimal text."""
-        return tuple(map(self.text, range(len(self))))
 
     def si(self, place: int, kind: Kind) -> float:
         """Return the value at a place in SI, as a quantity of this kind; KeyError when the unit is of another kind."""
@@ -136,11 +131,6 @@ class Slot:
     field: str
     kind: Kind
     parameter: str
-
-
-def in_order(slots: Iterable[Slot]) -> tuple[Slot, ...]:
-    """Return slots in the order of the statements that they stand in."""
-    return tuple(sorted(slots, key=lambda slot: (slot.path, slot.field)))
 
 
 def slot_fault(template: tuple[Statement, ...], slot: Slot, parameter: Parameter, control: Control) -> str | None:

@@ -56,11 +56,7 @@ _RANGE = f"{LOWEST_C:g} to {HIGHEST_C:g} °C".replace("-", "−")
 
 
 def to_si(number: str, unit: str, kind: Kind) -> float:
-    """Return the SI value of a number as written, for example 0.05 for ``50`` and ``ms``.
-
-    Raises ValueError when the number is not finite, too large, too small or too long, KeyError for a unit of another
-    kind.
-    """
+    """SI value of a number as written, 0.05 for ``50`` and ``ms``; ValueError, or KeyError for another kind of unit."""
     factor = UNITS[kind][unit]
     return float(exact_number(number) * factor)
 

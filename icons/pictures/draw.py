@@ -97,10 +97,7 @@ def evenly(count: int, most: int) -> list[int]:
 
 
 def chosen(sizes: Sequence[int], most: int) -> list[int]:
-    """Return at most ``most`` places among all combinations of as many values: the corners first, then evenly apart.
-
-    Corners, where each value is the first or the last, are what a family's extremes mostly are.
-    """
+    """At most ``most`` places among all combinations of values: the corners, a family's extremes, then evenly apart."""
     count = math.prod(sizes)
     corners = {0, count - 1}
     if count > most >= 2 ** len(sizes):

@@ -98,10 +98,9 @@ class Course:
         return self.levelled(times, np.arange(len(times)))
 
     def levelled(self, times: Array, level: NDArray[np.intp]) -> Path:
-        """Return the path with corners at these times that fits best; corners of one number in `level` share a value.
+        """The path with corners at these times that fits best; corners of one number in `level` share a value.
 
-        Where least squares leave the room by little, readings weigh more the farther they are off (Lawson 1961), which
-        takes the largest deviation towards its least.
+        Just outside of the room, readings weigh the more the farther they are off (Lawson 1961).
         """
         weight = np.ones_like(self.time)
         path = times, self._values(times, level, weight)
@@ -155,10 +154,8 @@ class Course:
 
 
 def course_of(time: Array, reading: Array, tolerance: float, start: float | None = None) -> Course:
-    """Return the course of readings at times (s) that rise or stand twice; `start` is the first value if prescribed.
-
-    Two readings at one time are a step when no value lies within the tolerance of both, or not the prescribed one;
-    otherwise they are one reading.
+    """The course of readings, of which `start` may prescribe the first; two at one time are a step where no value lies
+    within the tolerance of both, and otherwise one.
     """
     apart, twice = np.abs(np.diff(reading)), np.diff(time) == 0
     step = twice & (apart > 1.99 * tolerance)

@@ -182,10 +182,7 @@ def _name(path: Path) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Readings:
-    """A recording: its ``file`` and ``column``, times (s) from 0 that rise or stand twice, temperatures (°C).
-
-    ``first_row`` is where the first reading stands in the file.
-    """
+    """A recording: ``file``, ``column``, times (s) from 0, temperatures (°C), and the row of the first."""
 
     file: str
     column: str
@@ -196,10 +193,7 @@ class Readings:
 
 
 def read_readings(path: str | Path, column: str | None = None, columns: Mapping[str, str] | None = None) -> Readings:
-    """Return the recording in a CSV file; `column` names its temperatures, where the header does not tell.
-
-    `columns` says what the file calls ours. Raises ValueError that says what is wrong with the file, and in which row.
-    """
+    """The recording in a CSV file, of a `column` or by its header; ValueError on what is wrong in which row."""
     most = int(MOST_MB * 1_000_000)
     data = bytes_of(Path(path), "recording", ".csv", most, f"at most {most:,} are read; keep every tenth row")
     if data is None:

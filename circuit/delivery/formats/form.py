@@ -57,10 +57,7 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Played:
-    """One drive of an export, with the names of its file and of its sidecar, and the verdict on repetition.
-
-    `recovery_s` and `shortest_pause_s` in s are None where the gate found none.
-    """
+    """One drive of an export, its files, and the verdict on repetition; times in s are None where there are none."""
 
     delivery: DeliveredDrive
     file: str
@@ -187,10 +184,7 @@ def events_in(delivery: DeliveredDrive) -> tuple[Event, ...]:
 
 
 def events_of(corners: Corners, lead_s: float = 0.0) -> tuple[Event, ...]:
-    """Return the events of a cue that begins at `lead_s`: start and end of every stretch that rises or falls.
-
-    A stretch that ends at the level the cue began with is a return. Times are those that the cue prescribes.
-    """
+    """Events of a cue that begins at `lead_s`: start and end of every stretch that rises, falls, or is a return."""
     points = list(zip(corners.time_s, corners.value, strict=True))
     rest = corners.value[0]
     steps = [(_direction(a, b), a, b) for a, b in pairwise(points)]

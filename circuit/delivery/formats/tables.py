@@ -46,10 +46,7 @@ def setpoint_columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
 
 
 def write(delivery: DeliveredDrive) -> bytes:
-    """Return the table; numbers are written so that they are read back exactly, each event in the first row of its own.
-
-    A device with more than 10,000 updates a second gets a row for each change of the command.
-    """
+    """Return the table; above 10,000 updates a second it has a row for each change of the command."""
     return write_rows(delivery, samples_of(delivery).rows())
 
 
