@@ -8,7 +8,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from statistics import NormalDist
 from typing import Self
 
 import numpy as np
@@ -23,7 +22,7 @@ from ..observer.constants import Both
 from ..observer.mechanisms.summation import CM2
 from ..observer.observer import Observer
 from ..observer.people import People, draw_people
-from ..sensation.detection import quarters
+from ..sensation.detection import quarters, strata
 
 DT_S = 0.025
 """Step of drives: times of answers are interpolated within it."""
@@ -50,8 +49,7 @@ Samples = NDArray[np.int64]
 @lru_cache(maxsize=4)
 def trials_of(people: int, seed: int) -> Array:
     """Standard normal numbers (people, TRIALS), the same for every person, in an order of each person's own."""
-    middles = [NormalDist().inv_cdf((trial + 0.5) / TRIALS) for trial in range(TRIALS)]
-    return np.random.default_rng(seed).permuted(np.tile(middles, (people, 1)), axis=1)
+    return np.random.default_rng(seed).permuted(np.tile(strata(TRIALS), (people, 1)), axis=1)
 
 
 load_rig = lru_cache(maxsize=16)(Rig.load)

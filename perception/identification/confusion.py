@@ -13,7 +13,6 @@ are then asymmetric without a constant for it.
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from statistics import NormalDist
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,6 +22,7 @@ from thermicon.icons.model.arguments import checked
 from ..arrays import Array
 from ..kernels.parallel import over_rows
 from ..observer.observer import Observer
+from ..sensation.detection import strata
 from .episodes import Episodes, episode_distances, intensity_noise
 
 SAMPLES = 10_240
@@ -114,8 +114,6 @@ def confuse(
         raise ValueError("d_prime must be finite: a pair without a distance cannot be named")
     if samples < 1:
         raise ValueError(f"at least one sample is needed, not {samples}")
-    lapses = np.broadcast_to(np.asarray(lapse, dtype=np.float64), (people,))[:, None, None]
-
     if icons == 1:
         named = np.ones((people, 1, 1))
     elif icons == 2:
@@ -124,13 +122,19 @@ def confuse(
         named = np.stack([np.stack([right, 1.0 - right], -1), np.stack([1.0 - right, right], -1)], -2)
     else:
         named = _sampled(embed(distances), distances, seed, samples, first)
+    return _with_lapses(named, lapse, samples if icons > 2 else math.inf)
+
+
+def _with_lapses(named: Array, lapse: ArrayLike, samples: float) -> Confusion:
+    """Confusions of people who give any name in a share of trials; as accurate as so many samples of an icon are."""
+    people, icons = named.shape[:2]
+    lapses = np.broadcast_to(np.asarray(lapse, dtype=np.float64), (people,))[:, None, None]
     probability = normalised((1.0 - lapses) * named + lapses / icons)
-    mean = probability.mean(axis=0)
-    one = sampling_error(probability, samples) if icons > 2 else 0.0
-    return Confusion(probability, sampling_error(mean, samples * people) if icons > 2 else 0.0, one)
+    pooled_error = sampling_error(probability.mean(axis=0), samples * people)
+    return Confusion(probability, pooled_error, sampling_error(probability, samples))
 
 
-def sampling_error(probability: ArrayLike, samples: int) -> float:
+def sampling_error(probability: ArrayLike, samples: float) -> float:
     """Largest standard error of a cell that was sampled so often: no more than this, since draws are stratified."""
     p = np.asarray(probability, dtype=np.float64)
     return float(np.sqrt((p * (1.0 - p)).max() / samples))
@@ -197,11 +201,10 @@ def _sampled(points: Array, distances: Array, seed: int, samples: int, first: in
 def _noise(seed: int, person: int, axes: int, samples: int) -> Single:
     """Noise (axes, samples) of a person in single precision, read-only."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, 1], spawn_key=(person,)))
-    strata = _strata(samples)
     noise = rng.standard_normal((axes, samples))
-    noise[0] = strata
+    noise[0] = strata(samples)
     if axes > 1:
-        noise[1] = strata[rng.permutation(samples)]
+        noise[1] = strata(samples)[rng.permutation(samples)]
     found: Single = noise.astype(np.float32)
     found.setflags(write=False)
     return found
@@ -209,13 +212,6 @@ def _noise(seed: int, person: int, axes: int, samples: int) -> Single:
 
 _kept_noise = lru_cache(maxsize=128)(_noise)
 """The draws of a posterior judge the same few people on the same noise."""
-
-
-@lru_cache(maxsize=8)
-def _strata(samples: int) -> Array:
-    """Middles of equally likely parts of the normal distribution."""
-    inverse = NormalDist().inv_cdf
-    return np.array([inverse((k + 0.5) / samples) for k in range(samples)])
 
 
 NAMED_SAMPLES = 400
@@ -245,7 +241,6 @@ def name_directly(
     people, icons = felt.counts.shape
     own = np.broadcast_to(np.asarray(memory, dtype=np.float64), (people,))
     scale = np.ascontiguousarray(np.broadcast_to(np.asarray(louder, dtype=np.float64), (people, icons)))
-    lapses = np.broadcast_to(np.asarray(lapse, dtype=np.float64), (people,))[:, None, None]
     rated = felt.scaled("naming", observer)
     intensity, timing = intensity_noise("naming", observer, own), observer.timing_noise * own
     counts = np.zeros((people, icons, icons))
@@ -262,7 +257,4 @@ def name_directly(
 
     over_rows(work, people, people * icons * icons * samples)
     apart = episode_distances(felt, felt, observer, "naming", own)
-    named = shared_among_identical(counts / samples, apart)
-    probability = normalised((1.0 - lapses) * named + lapses / icons)
-    mean = probability.mean(axis=0)
-    return Confusion(probability, sampling_error(mean, samples * people), sampling_error(probability, samples))
+    return _with_lapses(shared_among_identical(counts / samples, apart), lapse, samples)

@@ -25,8 +25,6 @@ from .observer import Observer, load_thresholds, observer_records
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
-STANDARD = NormalDist()
-
 
 @dataclass(frozen=True, slots=True)
 class People:
@@ -193,7 +191,7 @@ def _columns(n: int, seed: int) -> tuple[dict[str, Array], dict[str, Array]]:
     names = tuple(people_records())
     streams = np.random.SeedSequence([seed, 0]).spawn(len(names))
     column = {name: np.random.default_rng(stream).random(n) for name, stream in zip(names, streams, strict=True)}
-    normal = {name: _normal(column[name]) for name in NORMAL}
+    normal = {name: normal_scores(column[name]) for name in NORMAL}
     for each in (*column.values(), *normal.values()):
         each.setflags(write=False)
     return column, normal
@@ -238,6 +236,7 @@ def people_records() -> Mapping[str, Record]:
     return MappingProxyType(records)
 
 
-def _normal(uniform: Array) -> Array:
-    within = np.clip(uniform, 1e-12, 1.0 - 1e-12)
-    return np.array([STANDARD.inv_cdf(p) for p in within.tolist()], dtype=np.float64)
+def normal_scores(shares: Array, outermost: float = 1e-12) -> Array:
+    """Standard normal numbers from shares of people, or of an interval, that stay so far within 0 and 1."""
+    inside = np.clip(shares, outermost, 1.0 - outermost)
+    return np.array([NormalDist().inv_cdf(share) for share in inside.ravel().tolist()]).reshape(shares.shape)

@@ -22,7 +22,7 @@ from ..observer.constants import BETWEEN_LABORATORIES
 from ..observer.draws import PosteriorDraws
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
-from ..observer.people import People, draw_people
+from ..observer.people import People, draw_people, normal_scores
 from ..observer.priors import Prior, priors_of
 
 LEAST_VARIANCE = 1e-12
@@ -101,7 +101,7 @@ class LaboratoryPrior:
         total = len(self.draws)
         chosen = [k % total for k in range(n)] if n > total else self.draws.spaced(n)
         rng = np.random.default_rng(np.random.SeedSequence([seed, 11]))
-        normal = _normal(latin(self._free, n, seed))
+        normal = normal_scores(latin(self._free, n, seed), OUTERMOST)
         offsets = rng.standard_normal((n, len(CHANNELS)))
         return Laboratories(np.hstack([self._whitened[chosen], normal, offsets]), rng.integers(SEEDS, size=n))
 
@@ -137,10 +137,4 @@ def _scores(parameter: Uncertain, draws: PosteriorDraws) -> Array:
     column = draws.memory[:, draws.memory_names.index(parameter.name)]
     # Tables may have been rounded beyond the ends.
     values = np.clip(column, parameter.low, parameter.high).tolist()
-    return _normal(np.array([parameter.share(value) for value in values]))
-
-
-def _normal(shares: Array) -> Array:
-    """Normal scores of shares of an interval."""
-    inside = np.clip(shares, OUTERMOST, 1.0 - OUTERMOST)
-    return np.array([NormalDist().inv_cdf(share) for share in inside.ravel().tolist()]).reshape(shares.shape)
+    return normal_scores(np.array([parameter.share(value) for value in values]), OUTERMOST)

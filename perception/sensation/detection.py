@@ -11,6 +11,7 @@ in a report, its onset is the median response time of those trials, its channel 
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from statistics import NormalDist
 
 import numpy as np
@@ -31,15 +32,20 @@ def time_of(given: Array, time_s: Array, probability: float) -> float:
     return float(np.interp(probability, given[k - 1 : k + 1], time_s[k - 1 : k + 1])) if k else float(time_s[0])
 
 
+@lru_cache(maxsize=8)
+def strata(count: int) -> Array:
+    """Middles of equally likely parts of the standard normal distribution."""
+    return np.array([NormalDist().inv_cdf((k + 0.5) / count) for k in range(count)])
+
+
 def quarters(sd: float) -> Array:
     """A normal number of mean 0 at the middles of four equal parts of its distribution; without spread, 0 alone."""
-    if sd == 0.0:
-        return np.zeros(1)
-    return sd * np.array([NormalDist().inv_cdf(share) for share in (0.125, 0.375, 0.625, 0.875)])
+    return np.zeros(1) if sd == 0.0 else sd * strata(4)
 
 
 STEP_S = 0.02
 """Step of response times, over which they are linear: far below the spread of any of them."""
+UNTIMED = "there are no response times: call detect with times=True"
 LATEST_S = 5.0
 """Longest delay from the end of the sensations to a report that response times resolve; slower ones count as this."""
 
@@ -80,7 +86,7 @@ class Detection:
     def courses(self) -> Array:
         """What `reported` holds; a ValueError where it was not asked for."""
         if self.reported is None:
-            raise ValueError("there are no response times: call detect with times=True")
+            raise ValueError(UNTIMED)
         return self.reported
 
     def reported_sum(self) -> Array:
@@ -90,6 +96,8 @@ class Detection:
     @property
     def channel(self) -> NDArray[np.int64]:
         """Channel (...,) that most reports go by: −1 not felt, 0 cold, 1 warm."""
+        if self.reported is None:  # shares of the channels come with the times
+            raise ValueError(UNTIMED)
         return np.where(self.felt, np.where(self.cold_share >= 0.5, 0, 1), -1).astype(np.int64)
 
 

@@ -96,10 +96,8 @@ def test_intervals_of_fifty_data_sets_cover_what_they_should() -> None:
     assert (np.abs(z) < 1.96).mean(axis=0).min() > 0.6
 
 
-def test_heat_flow_answers_too_and_an_unknown_experiment_is_named() -> None:
+def test_heat_flow_answers_too() -> None:
     posterior = Posterior("heat flow")
     assert not {"cold limit", "warm limit"} & set(posterior.priors.names)
     assert np.isfinite(posterior.residuals(np.zeros(len(posterior.priors)))).all()
     assert len(Posterior(left_out=frozenset({"E3"})).rows) < len(posterior.rows)
-    with pytest.raises(ValueError, match="no experiment 'E9' to leave out"):
-        Posterior(left_out=frozenset({"E9"}))

@@ -202,5 +202,3 @@ def test_messages(observer: Observer) -> None:
     ):
         with pytest.raises(ValueError, match=said):
             replace(observer, **{field: value})
-    with pytest.raises(ValueError, match=r"must have shape \(people, icons, n_time\), not \(2, 10\)"):
-        Episodes.of(np.zeros((2, 10)), np.zeros((2, 10)), DT, observer)
