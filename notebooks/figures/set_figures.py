@@ -53,8 +53,8 @@ def observed_figure(found: Observed[Any, Any], stacked: bool = False) -> Any:
     maps = {"Observed": observed, "Predicted": found.conditioned.simulated.pooled.mean(axis=0)}
     side = max(4.2, 1.2 + 0.07 * max(map(len, names)) + 0.45 * len(names))
     low = 1.4 + 0.6 * len(found.predictions)
-    rows: list[Any]
-    rows, heights = [["Observed", "Predicted"], ["after"] * 2], [side, low]
+    rows: Any = [["Observed", "Predicted"], ["after"] * 2]
+    heights = [side, low]
     if stacked:
         rows, heights = [[name] for name in (*maps, "after")], [FLAT * (side - 0.6), FLAT * side, low]
     figure = Figure(figsize=(len(rows[0]) * (side + 0.6), sum(heights)), layout="constrained")

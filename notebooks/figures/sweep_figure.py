@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.icons.model.arguments import InputError
 from thermicon.perception.ranking.swept import ALL, MEASURES
 
 from .style import INK, SCREEN, Look, plain
@@ -59,6 +60,8 @@ def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
     laboratory, and the black line is the whole set. The axis is logarithmic where values of the key
     are spaced more evenly in ratios than in steps.
     """
+    if frame.columns[0] != "icon" or len(frame.columns) < 2:
+        raise InputError("this is no table of sweep(), whose first columns are icon and the key that was varied")
     key = str(frame.columns[1])
     what = [name for column in frame for name, columns in MEASURES.items() if columns[0] == column]
     panels = [(MEASURES[name], LABELS[name]) for name in what]

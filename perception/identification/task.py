@@ -126,7 +126,7 @@ class Task:
 
     Raises
     ------
-    ValueError
+    InputError
         For a gap out of its range.
 
     Examples
@@ -134,7 +134,7 @@ class Task:
     >>> Task(gap_s=-1.0)
     Traceback (most recent call last):
     ...
-    ValueError: a gap of -1 s between icons must lie in 0 to 600 s
+    thermicon.icons.model.arguments.InputError: Task: a gap of -1 s between icons must lie in 0 to 600 s
     """
 
     gap_s: float | None = None

@@ -6,12 +6,14 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.builders import few_draws
 from thermicon.icons.number_text import percent_span
 from thermicon.notebooks.cli import ranking
-from thermicon.notebooks.cli.options import CrowdOptions, RigOptions
+from thermicon.notebooks.cli.options import CrowdOptions, RigOptions, commands
+from thermicon.notebooks.report.following import after_ranking
 from thermicon.perception.observer.observer import DATA
 
 Cli = Callable[..., Any]
@@ -82,13 +84,16 @@ def test_rules_of_thumb_score_a_set_without_the_model(cli: Cli) -> None:
     ("d_prime", "said"),
     [
         (2.57, "thermicon export 'my icons.cue' --set contact.area_cm2=9 --to csv -o drives"),
-        (2.5, "thermicon improve 'my icons.cue' --set contact.area_cm2=9 --people 7 --edits"),
+        (2.5, "thermicon improve 'my icons.cue' --people 7 --set contact.area_cm2=9 --edits"),
     ],
 )
 def test_the_next_command_is_chosen_by_what_was_found(d_prime: float, said: str) -> None:
-    found: Any = SimpleNamespace(pairs=[SimpleNamespace(d_prime=9.0), SimpleNamespace(d_prime=d_prime)])
+    pairs = (SimpleNamespace(d_prime=9.0), SimpleNamespace(d_prime=d_prime))
+    icons = tuple(SimpleNamespace(name=name, safe=True, reachable=True) for name in "abc")
+    set_ = SimpleNamespace(pairs=pairs, icons=icons, felt=SimpleNamespace(detected=np.array([0.9, 0.8, 0.7])))
+    found: Any = SimpleNamespace(ranking=set_, goal=None, edits={})
     rig, crowd = RigOptions(set=["contact.area_cm2=9"]), CrowdOptions(people=7)
-    assert ranking._following(found, ["my icons.cue"], rig, crowd) == said
+    assert after_ranking(found, commands(["my icons.cue"], rig, crowd)) == said
 
 
 def test_files_are_joined_into_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:
