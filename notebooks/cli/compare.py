@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from thermicon.icons.files.table_text import TABLES
-from thermicon.icons.number_text import number
+from thermicon.icons.number_text import count_of, number
 from thermicon.perception.criteria import MOST_ICONS
 
 from ..files.outputs import check_separate
@@ -168,7 +168,9 @@ def _as_wholes(names: tuple[str, str], asked: RigOptions) -> list[Block]:
     sets = [read_set([name]) for name in names]
     for name, icons in zip(names, sets, strict=True):
         if not 2 <= len(icons) <= MOST_ICONS:
-            raise LogError(f"{name} has {len(icons):,} icons; sets of 2 to {MOST_ICONS:,} are compared as a whole")
+            raise LogError(
+                f"{name} has {count_of(len(icons), 'icon')}; sets of 2 to {MOST_ICONS:,} icons are compared as a whole"
+            )
     rig = asked.load(sets[0], names[0])
     with progress_bar("ranking") as progress:
         one, other = (rank(icons, rig, progress=progress) for icons in sets)

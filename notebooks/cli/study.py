@@ -62,6 +62,8 @@ def study_command(
         typer.echo(line)
     note(f"wrote {len(files)} files into {folder}")
     note(CAUTION)
+    if materials.study.stimuli.set is not None:
+        note(f"Next, with the answers: thermicon pilot {materials.study.stimuli.set} --answers FILE.csv")
 
 
 def _check_free(folder: Path) -> None:
