@@ -1,8 +1,4 @@
-"""Sourced numbers: a number without a source does not load.
-
-A table is a TOML file with one `[[record]]` block for each number, which states a quantity, a unit, a source, a value
-or an interval, and the conditions under which it holds.
-"""
+"""Sourced numbers in TOML tables of `[[record]]` blocks: a number without a source does not load."""
 
 import json
 import math
@@ -32,10 +28,7 @@ class RecordError(InputError):
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """One sourced number: `value` is the central figure and `low`, `high` its interval, in `unit`.
-
-    At least one of the three, or a numeric entry of `extra`, which holds the further columns of a table, is there.
-    """
+    """One sourced number: `value` is central, `low` and `high` its interval, `extra` the further columns of a table."""
 
     quantity: str
     unit: str

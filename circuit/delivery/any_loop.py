@@ -183,5 +183,4 @@ class AnyLoop:
 
 
 def _whole_A(limit_A: float) -> float:
-    """A limit rounded down to whole steps."""
     return round(STEP_A * math.floor(limit_A / STEP_A + 1e-9), 2)

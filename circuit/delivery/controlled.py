@@ -17,6 +17,7 @@ from thermicon.icons.number_text import signed
 from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K
 from ..safety.checks import Check, CutOff, Demands, Loop, Scenario, SingleFault, worst_of
+from ..safety.current import checks_of_lanes
 from ..safety.demanded import polarity_check
 from ..safety.display import DisplayCourse, DisplayPlant
 from ..safety.gate import Gate, gate_shown
@@ -66,7 +67,7 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
     failed = tuple(check for check in (*swings, *held, *swung) if not check.passed)
     judged = []
     for delivery, verdict, drive in zip(deliveries, verdicts, drives, strict=True):
-        once, repeated = worst_of([module.checks(drive), verdict.once]), verdict.repeated
+        once, repeated = worst_of([checks_of_lanes(module.ensemble, drive, rig.limits), verdict.once]), verdict.repeated
         with_module = replace(
             verdict,
             scenarios=verdict.scenarios + len(module.ensemble.corners),

@@ -1,7 +1,6 @@
 """What a device delivers of a cue: quantised, held, limited, and simulated again.
 
-The file of a device that plays samples begins at rest: for one update (`lead_s`) it has the current or duty that holds
-the baseline, from the steady state. It ends at rest again, in a row that marks the end.
+A file of samples begins and ends at rest: its first update (`lead_s`) holds the baseline, its last row marks the end.
 """
 
 import math

@@ -1,18 +1,19 @@
 """The schema of a device file: its keys, and what its records may state."""
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib import resources
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field, ValidationError
 
 from thermicon.icons.near_words import did_you_mean
 from thermicon.icons.number_text import signed
 
-from ..inputs import LONGEST_NAME, InputError, Place, key_faults, one_line, paragraph, read_toml
+from ..inputs import LONGEST_NAME, InputError, Place, key_faults, read_toml
 from ..records import Record, RecordError
+from ..rig.faults import KeyTable, Paragraph, Text
 
 
 class DeviceError(InputError):
@@ -30,14 +31,7 @@ def quantities() -> tuple[dict[str, dict[str, Any]], dict[str, list[str]]]:
     return table["quantities"], table["needed"]
 
 
-Text = Annotated[str, AfterValidator(one_line)]
-
-
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-
-
-class RecordTable(_Table):
+class RecordTable(KeyTable):
     """One sourced number of a device."""
 
     quantity: Text
@@ -50,7 +44,7 @@ class RecordTable(_Table):
     confidence: Literal["high", "medium", "low", ""] = ""
 
 
-class DeviceTable(_Table):
+class DeviceTable(KeyTable):
     """A whole device file."""
 
     format: Literal[1]
@@ -63,37 +57,33 @@ class DeviceTable(_Table):
     streams: bool = False
     dc_coupled: bool = False
     played: bool = False
-    note: Annotated[str, AfterValidator(paragraph)] = ""
+    note: Paragraph = ""
     record: Annotated[list[RecordTable], Field(min_length=1, max_length=100)]
+
+    def faults(self) -> Iterable[str]:
+        """What its records state that no device has, and what they lack."""
+        (known, needed), driven_by = quantities(), self.driven_by
+        stated = {record.quantity: record for record in reversed(self.record)}
+        for place, record in enumerate(self.record):
+            if record.quantity in known:
+                wrong = [*_unit_faults(record, driven_by), *_number_faults(record)]
+                wrong += [] if stated[record.quantity] is record else ["appears twice; keep one"]
+            else:
+                wrong = [f"no such quantity; {did_you_mean(record.quantity, known)}"]
+            yield from (f"record.{place} ({record.quantity}): {fault}" for fault in wrong)
+        for quantity in needed[driven_by]:
+            if quantity not in stated:
+                unit = units_of(quantity).get(driven_by)
+                yield f"a device driven by {driven_by} needs a record of its {quantity}, in {unit}"
 
 
 def read_device_table(text: str, where: str) -> DeviceTable:
     """Return the checked table of a device file's text, or raise DeviceError with all its faults at once."""
     document = read_toml(text, where, "device file", ("driven_by",), DeviceError)
     try:
-        table = DeviceTable.model_validate(document)
+        return DeviceTable.model_validate(document)
     except ValidationError as problem:
         raise DeviceError("\n".join(f"{where}: {fault}" for fault in key_faults(problem, _nearest))) from None
-    if faults := _faults(table):
-        raise DeviceError("\n".join(f"{where}: {fault}" for fault in faults))
-    return table
-
-
-def _faults(table: DeviceTable) -> list[str]:
-    (known, needed), driven_by = quantities(), table.driven_by
-    faults, stated = [], {record.quantity: record for record in reversed(table.record)}
-    for place, record in enumerate(table.record):
-        if record.quantity in known:
-            wrong = [*_unit_faults(record, driven_by), *_number_faults(record)]
-            wrong += [] if stated[record.quantity] is record else ["appears twice; keep one"]
-        else:
-            wrong = [f"no such quantity; {did_you_mean(record.quantity, known)}"]
-        faults += [f"record.{place} ({record.quantity}): {fault}" for fault in wrong]
-    return faults + [
-        f"a device driven by {driven_by} needs a record of its {quantity}, in {units_of(quantity).get(driven_by)}"
-        for quantity in needed[driven_by]
-        if quantity not in stated
-    ]
 
 
 def units_of(quantity: str) -> dict[str, str]:
@@ -104,7 +94,6 @@ def units_of(quantity: str) -> dict[str, str]:
 
 
 def _unit_faults(record: RecordTable, driven_by: str) -> Iterator[str]:
-    """What is wrong with the unit of a record, in a sentence with the cure."""
     units, stated = units_of(record.quantity), record.unit
     required = units.get(driven_by)
     others = [f'"{drive}"' for drive, unit in units.items() if unit == stated]
@@ -121,7 +110,6 @@ def _unit_faults(record: RecordTable, driven_by: str) -> Iterator[str]:
 
 
 def _number_faults(record: RecordTable) -> Iterator[str]:
-    """What numbers of a record no device has, in sentences with the limit or the cure."""
     about, unit = quantities()[0][record.quantity], record.unit
     low, high = record.low, record.high
     if about.get("interval"):

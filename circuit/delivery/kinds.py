@@ -1,8 +1,4 @@
-"""The five kinds of device: what each puts out, how it delivers a cue, which gate judges that, and what plays it.
-
-`driven_by` of a device file names one, which is `Device.kind`. A new kind is a class here, with its name in `KINDS` and
-in `DrivenBy` of `devicefile.py`; what its devices must state is in `circuit/data/device-quantities.toml`.
-"""
+"""The five kinds of device: what each puts out, how it delivers a cue, which gate judges that, and what plays it."""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -126,6 +126,5 @@ def _least(works: Callable[[float], bool], most: float) -> float | None:
 
 
 def _three_digits(value: float, towards: Callable[[float], int]) -> float:
-    """A value with three digits, rounded up or down."""
     digits = 10.0 ** (2 - math.floor(math.log10(value)))
     return towards(value * digits - 1e-9 if towards is math.ceil else value * digits + 1e-9) / digits

@@ -145,7 +145,6 @@ def _electrical(rig: Rig, corners: list[tuple[float, float]]) -> Iterator[str]:
 
 
 def _module(rig: Rig) -> Iterator[str]:
-    """Both plates and the legs between them."""
     module, alpha = rig.module, repr(rig.module.seebeck_V_per_K)
     joule = f"{module.resistance_ohm / 2!r}*I(Vsense)*I(Vsense)"
     yield from _section(f"the module's thermal side; {ZERO_C_IN_K!r} makes kelvin of degC")

@@ -4,7 +4,6 @@ The rig is not involved: a thermode measures its own surface and corrects it.
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -26,11 +25,7 @@ is never refused for it."""
 
 @dataclass(frozen=True, slots=True)
 class Setpoints:
-    """Segments after a baseline: how long each lasts in ticks, and the level at its end in steps of temperature.
-
-    A segment ends when its ticks are over, for warming and cooling alike. The last `closing` segments are not part of
-    the cue: they lead back to the baseline.
-    """
+    """Segments after a baseline: ticks, and the level at their end in steps; the last `closing` lead back to it."""
 
     tick_s: float
     step_K: float
@@ -81,13 +76,16 @@ def setpoints_of(device: Device, time_s: Array, level_C: Array, curve: bool) -> 
 
     Raises DeviceError where baseline, level or number of segments is beyond the device.
     """
+    from thermicon.icons.recordings.polyline import cuts_of
+
     step, tick = device.most("set-point step"), device.most("tick")
     check_level("baseline", float(level_C[0]), device.interval("baseline range"), device)
     for level in (float(level_C.min()), float(level_C.max())):
         check_level("set-point", level, device.interval("set-point range"), device)
     most, tolerance = int(device.most("segments")), 0.5 * step
     while True:
-        rows = _thinned(time_s, level_C, tolerance) if curve else range(len(time_s))
+        ends, room = [0, len(time_s) - 1], np.ones(len(time_s))
+        rows = cuts_of(time_s, level_C, room, ends, tolerance) if curve else range(len(time_s))
         segments = _segments(device, [float(time_s[k]) for k in rows], [float(level_C[k]) for k in rows])
         if len(segments) <= most:
             return Setpoints(tick, step, round(float(level_C[0]) / step), segments)
@@ -150,20 +148,3 @@ def check_level(what: str, level: float, limits: tuple[float, float], device: De
             f"{device.name}: a {what} of {level:.4g} °C is beyond {limits[0]:g} … {limits[1]:g} °C; change the icon, "
             f"or use another device"
         )
-
-
-def _thinned(time_s: Array, level_C: Array, tolerance: float) -> Sequence[int]:
-    """Corners that keep a line within a tolerance in K of all points: Ramer–Douglas–Peucker without recursion."""
-    corners, open_ = {0, len(time_s) - 1}, [(0, len(time_s) - 1)]
-    while open_:
-        first, last = open_.pop()
-        if last - first < 2:
-            continue
-        inner = slice(first + 1, last)
-        chord = np.interp(time_s[inner], time_s[[first, last]], level_C[[first, last]])
-        apart = np.abs(level_C[inner] - chord)
-        worst = first + 1 + int(np.argmax(apart))
-        if apart.max() > tolerance:
-            corners.add(worst)
-            open_ += [(first, worst), (worst, last)]
-    return sorted(corners)

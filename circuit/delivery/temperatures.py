@@ -20,9 +20,7 @@ from ..arrays import Array
 from ..rig.corner import with_gain
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..safety.checks import Check
 from ..safety.corners import corners_of
-from ..safety.current import checks_of_lanes
 from ..safety.ensemble import Ensemble, LaneDrives
 from ..safety.single_faults import Faulty
 from ..safety.tally import WATCHED
@@ -165,10 +163,6 @@ class FollowingModule:
             for rig, gain in zip(self.rigs, self.ensemble.gain, strict=True)
         ]
         return LaneDrives(flows[0].time_s, np.array([flow.current_A for flow in flows]) / self.ensemble.gain[:, None])
-
-    def checks(self, drives: LaneDrives) -> tuple[Check, ...]:
-        """Every rule in its worst corner and ending."""
-        return checks_of_lanes(self.ensemble, drives, self.ensemble.rig.limits)
 
     def unpowered_C(self) -> tuple[float, float]:
         """Between which temperatures in °C the display stands without power; RigError where the sink cannot."""

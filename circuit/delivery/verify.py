@@ -112,7 +112,6 @@ def _names(name: str, claims: Claims, others: Mapping[str, Claims]) -> Iterator[
 
 
 def _program(name: str, about: Mapping[str, Any]) -> Iterator[Finding]:
-    """Notes where the program or the shipped rig has changed since."""
     from ..rig.rig import Rig, rig_names
 
     rig = about.get("rig")

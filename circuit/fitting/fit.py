@@ -108,7 +108,6 @@ def fit(
 
 
 def _told(rig: Rig, runs: tuple[Run, ...], alone: bool, offset_K: float, fixed_skin: bool) -> tuple[str, ...]:
-    """The keys that runs can tell together; FitError where there is none."""
     keys = possible_keys(rig, alone)
     told = tellable(Problem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin))
     if not told and alone:  # with the outermost layer, in series

@@ -70,5 +70,4 @@ def _pair(above: Axes, below: Axes, each: ChannelFit, named: bool) -> None:
 
 
 def _words(column: str) -> str:
-    """A column as people say it: its name without the unit."""
     return column.rpartition("_")[0].replace("_", " ")

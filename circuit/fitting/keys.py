@@ -97,7 +97,6 @@ def free_keys(keys: Sequence[str], rig: Rig, alone: bool = False) -> tuple[FitKe
 
 
 def _fault(name: str, rig: Rig, known: Sequence[str]) -> str:
-    """Why a key cannot be fitted, with the nearest one that can."""
     if name in _table() and set(known) <= {*UNDER_DISPLAY, *(key for key in known if _PROBE.fullmatch(key))}:
         why = f"rig {rig.name} is a thermode" if rig.thermode else "no log has a current"
         return f"{name}: {why}, so that the display is the drive, and only {', '.join(known)} can be fitted"

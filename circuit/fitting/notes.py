@@ -95,7 +95,6 @@ def _offset(channel: Channel, offset_K: float, usual_K: float, misfit: bool) -> 
 
 
 def _slow_drives(problem: Problem) -> list[str]:
-    """Logs slower than the driver: what it did between the rows is not known."""
     return [
         f"{run.name}: rows are {1e3 * run.step_s:.0f} ms apart, and the rig's driver may change every "
         f"{1e3 / problem.rig.update_Hz:.0f} ms: what it did in between is not in the log, and intervals allow for it; "

@@ -1,12 +1,8 @@
 """The fit as numbers: free keys and what is fitted along with them, residuals of all channels, and their derivatives.
 
-Along with the keys go the zero of every temperature sensor, how far the sensors are from the drive within a row, shift
-and drift of every further clock and, unless left out, the layers of the skin.
-Scales are fitted as logarithms, so that they stay positive and intervals are relative.
-
 Nobody's skin is that of the rig file: the prior of a factor of its layers is the spread between people. What is a times
 as thick is simulated as equally thick with 1/a of the conductivity and a times the density and perfusion, which is the
-same to a log and keeps the mesh of the skin.
+same to a log and keeps the mesh of the skin. Scales are fitted as logarithms, so that they stay positive.
 """
 
 from __future__ import annotations

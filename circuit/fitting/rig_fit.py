@@ -30,11 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ChannelFit(Beside):
-    """A measured column beside the fitted rig, on the clock of its run's drive.
-
-    `run` and `file` are the log with the drive and that of the column, `unit` that of a difference: K or V. `offset_K`
-    of the sensor was fitted along, and is contained in `simulated`.
-    """
+    """A measured column of a `file` beside the fitted rig, with the sensor's `offset_K`; `unit` of a difference."""
 
     run: str
     file: str

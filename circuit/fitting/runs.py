@@ -194,7 +194,6 @@ def _part(time: Array, drive: Array, alone: bool) -> slice:
 
 
 def _check_exchanged(log: Log) -> None:
-    """Raise LogError for a skin that moves more than the display above it."""
     if {DISPLAY, "skin_C"} <= set(log.measured):
         moves = [float(np.subtract(*np.nanpercentile(log.column(name), [95, 5]))) for name in (DISPLAY, "skin_C")]
         if moves[1] > MOST_MOVED * moves[0]:
@@ -205,7 +204,6 @@ def _check_exchanged(log: Log) -> None:
 
 
 def _check_probes(log: Log, rig: Rig) -> None:
-    """Raise LogError for the reading of a probe that the rig does not have."""
     there = [f"probe_{probe.name}_C" for probe in rig.probes]
     for column in log.measured:
         if column.startswith("probe_") and column not in there:

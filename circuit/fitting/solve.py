@@ -31,10 +31,7 @@ FEWEST_INDEPENDENT = 8.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solution:
-    """Where the fit ended: the point, its covariance, and of each channel the SD and the spread of its residuals.
-
-    `inflation`: how many alike neighbouring rows of a channel count as one.
-    """
+    """Where the fit ended; `inflation`: how many alike neighbouring rows of a channel count as one."""
 
     theta: Array
     covariance: Array

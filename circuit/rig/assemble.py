@@ -38,7 +38,6 @@ def pump_of(table: RigTable) -> HeatPump | None:
 
 
 def _heat_sink(table: HeatSinkTable, room_C: float) -> HeatSink:
-    """The heat sink of a rig file in a room; raises ValueError for a controller with a key missing."""
     if table.air_resistance_K_per_W is not None:
         assert table.capacity_J_per_K is not None
         air_C = room_C if table.air_C is None else table.air_C

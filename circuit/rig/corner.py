@@ -73,7 +73,6 @@ def with_gain(rig: Rig, gain_relative: float) -> Rig:
 
 
 def _pumped(rig: Rig, *, heat_sink: HeatSink | None = None, module: Peltier | None = None) -> Rig:
-    """The rig with another heat sink or module."""
     assert rig.pump is not None
     return replace(rig, pump=replace(rig.pump, heat_sink=heat_sink or rig.heat_sink, module=module or rig.module))
 
@@ -107,7 +106,6 @@ def _module(rig: Rig, seebeck: float, conductance: float, plates: float) -> Pelt
 
 
 def _check(rig: Rig, shares: dict[str, float], shifts: dict[str, tuple[float, float]]) -> None:
-    """Raise RigError with every impossible factor, a line each."""
     faults = []
     for name, share in shares.items():
         if not (math.isfinite(share) and share > -1.0):

@@ -50,12 +50,14 @@ def rig_summary(rig: Rig, for_methods: bool = False) -> str:
         limits = f"{low} … {driver.current_max_A:g} A, {driver.voltage_limit_V:g} V at most"
         rows.append(("driver", f"{limits}, updated at {driver.update_Hz:g} Hz"))
     head = f"{rig.name}: {rig.title}" if rig.title and not named else rig.name
-    lines = [line for label, text in rows for line in _wrapped(label, text.rstrip(".") if for_methods else text)]
-    return "\n".join([head, *lines])
+    lines = [head]
+    for label, text in rows:
+        said, first = text.rstrip(".") if for_methods else text, f"  {label:<11}"
+        lines += textwrap.wrap(said, WIDTH, initial_indent=first, subsequent_indent=" " * 13)
+    return "\n".join(lines)
 
 
 def _rows(rig: Rig) -> list[tuple[str, str]]:
-    """Site, skin, and module or thermode, with their labels."""
     flux = -rig.resting_flux_W_per_m2
     how = "from the heat balance" if rig.skin.deep_C is None else "given"
     skin = [
@@ -74,7 +76,6 @@ def _rows(rig: Rig) -> list[tuple[str, str]]:
 
 
 def _resistance(contact: Contact) -> str:
-    """The resistance of a contact, and what those of its kind have."""
     for record in shipped_records("contacts.toml"):
         low, high = record.interval
         if low <= contact.resistance_m2K_per_W <= high:
@@ -88,10 +89,6 @@ def _thermode(thermode: Thermode) -> str:
         f"{thermode.lowest_C:g} … {thermode.highest_C:g} °C at up to {thermode.slew_K_per_s:g} K/s, {fine} at "
         f"{thermode.update_Hz:g} Hz, followed with a lag of {thermode.lag_s:g} s; no module, no current"
     )
-
-
-def _wrapped(label: str, text: str) -> list[str]:
-    return textwrap.wrap(text, WIDTH, initial_indent=f"  {label:<11}", subsequent_indent=" " * 13)
 
 
 USUAL = {
@@ -130,7 +127,6 @@ def _slips(rig: Rig) -> Iterator[Unusual]:
 
 
 def _skin(rig: Rig) -> Iterator[Unusual]:
-    """Receptors that an observer does not place, heat loss and blood."""
     if rig.skin.own:
         yield unusual("receptors")
     loss_W_per_m2 = -rig.resting_flux_W_per_m2
@@ -156,7 +152,6 @@ def _limits(rig: Rig) -> Iterator[Unusual]:
 
 
 def _driver(rig: Rig) -> Iterator[Unusual]:
-    """A plate that is faster than the solver."""
     driver, stored = rig.driver, rig.module.cold_plate_J_per_K
     least_s = STEPS * min(STEP_S, 1.0 / driver.update_Hz)
     through = rig.contact.area_m2 / rig.contact.resistance_m2K_per_W + 1.0 / rig.module.thermal_resistance_K_per_W
@@ -186,7 +181,6 @@ def _module(rig: Rig) -> Iterator[Unusual]:
 
 
 def _site(rig: Rig) -> Iterator[Unusual]:
-    """A change that names another site and leaves the skin as it was."""
     from .rig import Rig, rig_names
 
     stated = changed(rig.changes)

@@ -302,7 +302,6 @@ def _keys(table: type[BaseModel], prefix: str) -> Iterator[str]:
 
 
 def _table_in(annotation: Any) -> type[BaseModel] | None:
-    """The table that a key holds, alone or in a list."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
     return next((table for each in get_args(annotation) if (table := _table_in(each))), None)
@@ -317,7 +316,6 @@ def unknown_key(key: str) -> str:
 
 
 def _nearest(parts: Place) -> str:
-    """What an unknown key may have been meant to be."""
     key = ".".join("0" if isinstance(part, int) else part for part in parts)
     known = set(rig_keys()) | {known.rpartition(".")[0] for known in rig_keys() if "." in known}
     place, dot, name = key.rpartition(".")

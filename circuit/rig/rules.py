@@ -182,7 +182,6 @@ def session_fault(minutes: float, reason: str) -> str | None:
 
 
 def _crossed(changes: Mapping[str, float], reason: str) -> list[str]:
-    """Sentences for changed limits that leave no room between them."""
     rules, faults = _changed(changes, reason).rules, []
     for low in rules:
         for high in rules:
@@ -210,16 +209,14 @@ def _changed(changes: Mapping[str, float], reason: str) -> Limits:
     rules = []
     for rule in _shipped().rules:
         if rule.key in changes:
-            value = abs(changes[rule.key]) * (1.0 if rule.upper else -1.0) if _symmetric(rule) else changes[rule.key]
+            value = changes[rule.key]
+            if rule.relative or rule.unit == "K/s":  # one figure for both directions
+                value = abs(value) * (1.0 if rule.upper else -1.0)
             if value != rule.limit:
                 source = f"the rig's [safety]; shipped {rule.shipped:g}, {rule.source}"
                 rule = replace(rule, limit=float(value), source=source)
         rules.append(rule)
     return Limits(tuple(rules), reason)
-
-
-def _symmetric(rule: Rule) -> bool:
-    return rule.relative or rule.unit == "K/s"
 
 
 def _rules(record: Record) -> list[Rule]:

@@ -1,7 +1,5 @@
-"""What the gate finds, as records by which every decision is made: checks of runs against the rules of safety, with how
-near they come, when and in which scenario; and what software cannot make safe, so that the hardware must prevent it.
-
-`words` turns them into sentences.
+"""What the gate finds: checks of runs against rules, how near they come, when and in which scenario; and what
+the hardware must prevent. `words` turns them into sentences.
 """
 
 from collections.abc import Iterable, Mapping, Sequence

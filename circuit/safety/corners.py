@@ -80,7 +80,6 @@ def contact_corners(rig: Rig) -> tuple[Corner, ...]:
 
 
 def _ends(most: float) -> tuple[float, ...]:
-    """Both ends of an uncertainty, or nothing but the rig as given."""
     return (-most, most) if most else (0.0,)
 
 

@@ -210,7 +210,6 @@ class CurrentPlant(Plant[CurrentPlay, State]):
     def _before(
         self, plays: Sequence[CurrentPlay], pause_s: float, steady: Sequence[State], of: int
     ) -> Iterator[tuple[State, Before]]:
-        """States before a play that follows another, and what that is."""
         for number, (play, settled) in enumerate(zip(plays, steady, strict=True)):
             start = self.rest(play)
             if number == of:

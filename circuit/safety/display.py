@@ -39,10 +39,7 @@ _PLACE = {name: FELT.index(name) for name in WATCHED if name in FELT}
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DisplayCourse:
-    """A display (rows,) in °C, `step_s` apart and linear between: what a device shows if it follows in a certain `way`.
-
-    The last `settling_s` come after the end of the drive, until the display has arrived, and are part of the pause.
-    """
+    """A display (rows,) in °C, `step_s` apart, in a certain `way`; its last `settling_s` are part of the pause."""
 
     way: str
     step_s: float
@@ -234,7 +231,6 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         ]
 
     def _faults(self, repeating: Repeating[DisplayCourse, list[Array]], starts: Starts[list[Array]]) -> list[_Faults]:
-        """Faults of each drive in any play that may begin."""
         found = []
         for ways in repeating.drives:
             warm, cold = (

@@ -229,7 +229,6 @@ def gate_shown(
 
 
 def _rest_of(drive: Drive, rest_A: float | None, bridge_A: float | None) -> float:
-    """The resting current of a drive, by default its first; raises DriveError for an impossible one."""
     if rest_A is None:
         if bridge_A is not None:
             raise DriveError("the mean current of rest is needed where a bridge switches; give rest_A")

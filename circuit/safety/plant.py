@@ -1,9 +1,4 @@
-"""What the gate asks of a plant: the few verbs by which it plays, repeats and judges, in all corners at once; and one
-play by them, with what follows it.
-
-There are two plants: a module that a current drives (`current.py`), and a display that shows temperatures
-(`display.py`).
-"""
+"""What the gate asks of a plant, in all corners at once, as `current.py` and `display.py` are; and one play."""
 
 from __future__ import annotations
 
@@ -194,10 +189,7 @@ RECOVERY_ROWS_S = np.concatenate([np.arange(1200) * 0.1, 120.0 + np.arange(481) 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Single(Generic[Played, States]):
-    """A play from rest: every rule in every scenario, and the states it starts from and ends with.
-
-    The first of `tallies` is that of the play alone; `after_C` (corners,) is the skin 60 s later for each ending.
-    """
+    """A play from rest: tallies, the first of the play alone, states at both ends, and the skin 60 s later."""
 
     plant: Plant[Played, States]
     play: Played

@@ -214,5 +214,4 @@ def _parted(joined: Array, like: State) -> State:
 
 
 def _change(moved: Array) -> Array:
-    """Largest change of a lane in K."""
     return np.asarray(np.abs(np.nan_to_num(moved, nan=HOTTEST_C)).max(axis=1))

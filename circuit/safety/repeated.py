@@ -146,8 +146,9 @@ class Repeating(Generic[Played, States]):
         for (rows, values), then in plant.play(play, state):
             tally.add(rows, values, rates=plant.rates and before.plays == "cycle")
             state = then
-        pause = np.append(0.0, pause_rows(left_s(play, before.pause_s)))
-        if len(pause) > 1:
+        if (left := left_s(play, before.pause_s)) > 0.0:
+            inside = (RECOVERY_ROWS_S > 0) & (left - 1e-6 > RECOVERY_ROWS_S)
+            pause = np.concatenate([[0.0], RECOVERY_ROWS_S[inside], [left]])
             tally.add(play.end_s + pause, plant.hold(play, state, pause), rates=False)
         yield tally
         if endings:
@@ -160,14 +161,6 @@ class Repeating(Generic[Played, States]):
 def plays_in(play: Play, pause_s: float, session_s: float) -> int:
     """Number of plays that fit into a session; at least one."""
     return max(1, math.floor((session_s + pause_s) / (play.end_s + left_s(play, pause_s)) + 1e-9))
-
-
-def pause_rows(pause_s: float) -> Array:
-    """Times in s of the rows of a pause after its beginning, its end the last."""
-    if pause_s <= 0:
-        return np.empty(0)
-    inside = (RECOVERY_ROWS_S > 0) & (pause_s - 1e-6 > RECOVERY_ROWS_S)
-    return np.append(RECOVERY_ROWS_S[inside], pause_s)
 
 
 def shortest_pause_s(repeating: Repeating[Played, States]) -> float | None:

@@ -138,7 +138,6 @@ def check_length(durations_s: Sequence[float], gap_s: float) -> float:
 
 
 def _words(text: str) -> Iterator[tuple[int, str]]:
-    """Line and name of every entry of an order file."""
     for line, content in enumerate(text.splitlines(), 1):
         for word in content.partition("#")[0].split(","):
             if word.strip():

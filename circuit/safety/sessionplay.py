@@ -52,10 +52,7 @@ _Timed = tuple[str, int, int]
 
 @dataclass(frozen=True, slots=True)
 class SessionDrive:
-    """The drive of a session, begun from `start_C` (state, °C) that `rest_A` has held; plays (k,) start and end in s.
-
-    `rate_Hz` is a multiple of the driver's update rate, so that no change of the current lies between two rows.
-    """
+    """The drive of a session, begun from `start_C` that `rest_A` has held; rows at `rate_Hz` meet all its changes."""
 
     drive: Drive
     rest_A: float
@@ -94,7 +91,6 @@ def drive_of(plan: SessionPlan, icons: Mapping[str, Icon], rig: Rig, tracking: s
 def _replayed(
     timed: Sequence[_Timed], icons: Mapping[str, Icon], lasting: Mapping[str, float], rig: Rig
 ) -> tuple[Drive, Design]:
-    """The currents of every icon from rest, each followed by its own resting current."""
     plans = {name: design(icons[name], rig, lasts_s) for name, lasts_s in lasting.items()}
     counts = {name: count for name, _, count in timed}
     currents = {name: held_A(plan.drive, counts[name], rig.driver.update_Hz) for name, plan in plans.items()}
@@ -137,7 +133,6 @@ def _tracked(
 
 
 def _setpoints(icon: Icon, rig: Rig, count: int, lasts_s: float) -> tuple[float, Array]:
-    """Display temperature in °C at rest, and at the end of every update of an icon."""
     control, base = icon.context.control, baseline_C(icon, rig)
     if control == "current":
         raise SessionError(
@@ -250,7 +245,6 @@ def play_session(
 
 
 def _plays(plan: SessionPlan, played: SessionDrive, trace: Trace, limits: Limits, energy_J: Array) -> tuple[Play, ...]:
-    """Every play, judged on its own rows of the run."""
     first = np.rint(np.array(played.starts_s) * played.rate_Hz).astype(np.int64)
     plays, rest = [], float(trace.skin_C[0])
     for place, (begin, until) in enumerate(pairwise([*first.tolist(), len(trace.time_s) - 1])):

@@ -59,11 +59,7 @@ class Moments:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Faulty:
-    """A drive in its worst corners, ready for its single faults; `start` is the state of rest there.
-
-    `bounds` are the states between which every play begins; without any, only one from rest counts. `instants` are
-    those of `moments` that count; None: all.
-    """
+    """A drive in its worst corners with its rest in `start`; begun between `bounds` if any, at `instants` or all."""
 
     ensemble: Ensemble
     drive: Drive

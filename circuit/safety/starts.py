@@ -37,10 +37,7 @@ class Starts(Generic[States]):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Beginning(Generic[Played, States]):
-    """How drives may begin, with any pause: `left` are states (warm, cold) beyond all in which a rest may begin.
-
-    `recovery_s` is how long a rest is held at most so that a first play's faults are no worse than a later one's.
-    """
+    """How drives may begin: by a rest of `recovery_s` at most from states `left` (warm, cold), or after other plays."""
 
     repeating: Repeating[Played, States]
     left: tuple[States, States]

@@ -210,7 +210,6 @@ class Tally:
         return bool(np.isnan(self._since_s[self._rules.hard]).all())
 
     def _limits(self) -> Array:
-        """The limit of every rule in each lane (rules, lanes)."""
         limit, begun = self._rules.limit[:, np.newaxis], 0.0 if self._begun is None else self._begun
         return np.where(self._rules.relative[:, np.newaxis], begun + limit, limit + np.zeros(len(self.lanes)))
 

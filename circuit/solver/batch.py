@@ -219,17 +219,14 @@ class _Stage:
         return values.reshape(len(self.probes), len(self.rigs), len(targets), len(self.rows))
 
     def _held(self, currents: Array) -> Intervals:
-        """Time cut for currents (…, periods) held over the driver's periods."""
         times = np.concatenate([[0.0], periods(self.nominal, self.end_s)])
         return cut(self.rows, times, np.concatenate([currents, currents[:, -1:]], axis=1), held=True)
 
     def _lanes(self, cues: int) -> tuple[Index, Index]:
-        """Rig and cue of every lane, all cues of a rig together."""
         rig_of, cue_of = (place.ravel() for place in np.indices((len(self.rigs), cues)))
         return rig_of, cue_of
 
     def _play(self, currents: Array, icons: Sequence[Icon], states: Sequence[Array]) -> Array:
-        """Run held currents, one row per cue or per lane, on every rig and cue from given states."""
         rig_of, cue_of = self._lanes(len(icons))
         if len(currents) == len(rig_of):
             cue_of = np.arange(len(rig_of))

@@ -81,11 +81,7 @@ def bank_of(rig: Rig) -> Bank:
 
 @dataclass(frozen=True, slots=True)
 class Intervals:
-    """Time cut at every instant where a current changes or a row is written.
-
-    `edges_s` (e,); `row_of` (e,): the row written at an edge, or −1; `start_A`, `end_A` (e − 1, cues), so that the
-    lanes of a block lie side by side.
-    """
+    """Time cut where a current changes or a row is written: `row_of` (e,) is that row, or −1; (e − 1, cues) A."""
 
     edges_s: Array
     row_of: Index

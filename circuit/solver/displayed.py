@@ -57,7 +57,8 @@ def design_display(icon: Icon, rig: Rig, end_s: float, finest_s: float = FINEST_
     Corners of a display are rounded to the resolution; what a skin needs is not, as it is drawn in segments.
     """
     refuse_current(icon, f"rig {rig.name}")
-    thermode, modes, base = _thermode(rig), modes_of(rig), baseline_C(icon, rig)
+    assert rig.thermode is not None
+    thermode, modes, base = rig.thermode, modes_of(rig), baseline_C(icon, rig)
     update = 1.0 / thermode.update_Hz
     ticks: Array = np.arange(math.ceil(end_s / update - 1e-9) + 1, dtype=np.float64) * update
     step = part_of(update, finest_s)
@@ -65,12 +66,14 @@ def design_display(icon: Icon, rig: Rig, end_s: float, finest_s: float = FINEST_
     limits = thermode.lowest_C, thermode.highest_C
     if icon.context.control == "skin":
         start = modes.display_holding_skin_C(base)
-        _check_baseline(start, rig, f" (for {base:g} °C on the skin)")
+        _check_baseline(start, rig, thermode, f" (for {base:g} °C on the skin)")
         setpoints_C = modes.display_for_skin(target_at(icon, base, ticks), update, start, thermode.slew_K_per_s, limits)
     else:
-        _check_baseline(base, rig, "")
+        _check_baseline(base, rig, thermode, "")
         corners = icon.corners(base)
-        levels = _rounded(np.array(corners.value), thermode.resolution_K)
+        levels = np.array(corners.value)
+        if thermode.resolution_K:
+            levels = np.rint(levels / thermode.resolution_K) * thermode.resolution_K
         setpoints_C = np.clip(np.interp(ticks, corners.time_s, levels), *limits)
     setpoints = np.interp(times, ticks, setpoints_C)
     prompt = shown(setpoints, step, 0.0, thermode.slew_K_per_s)
@@ -170,17 +173,7 @@ def _at(rows: Array, times: Array, values: Array) -> Array:
     return np.asarray(np.interp(rows, times, values), dtype=np.float64)
 
 
-def _rounded(levels: Array, resolution_K: float) -> Array:
-    return np.rint(levels / resolution_K) * resolution_K if resolution_K else levels
-
-
-def _thermode(rig: Rig) -> Thermode:
-    assert rig.thermode is not None
-    return rig.thermode
-
-
-def _check_baseline(display_C: float, rig: Rig, why: str) -> None:
-    thermode = _thermode(rig)
+def _check_baseline(display_C: float, rig: Rig, thermode: Thermode, why: str) -> None:
     if not thermode.lowest_C - 1e-9 <= display_C <= thermode.highest_C + 1e-9:
         raise RigError(
             f"rig {rig.name}: a baseline of {display_C:.4g} °C on the display{why} is beyond its {thermode.lowest_C:g} "

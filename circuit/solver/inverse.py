@@ -124,7 +124,6 @@ def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, 
 
 
 def _designs(icons: Sequence[Icon], rig: Rig, control: str, end_s: float) -> list[Design]:
-    """Designs of cues with one kind of control, side by side, by the inverse of the module."""
     bank, ends, period = bank_of(rig), periods(rig, end_s), 1.0 / rig.driver.update_Hz
     bases = [baseline_C(icon, rig) for icon in icons]
     rest = {base: steady_state(rig, control, base) for base in dict.fromkeys(bases)}

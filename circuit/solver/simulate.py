@@ -224,7 +224,6 @@ def _trace(
 
 
 def _beyond(rig: Rig, rows: Array, current: Array, voltage: Array) -> tuple[str, ...]:
-    """Sentences for a drive that exceeds the driver."""
     driver, sentences = rig.driver, []
     low, high, volts = driver.current_min_A, driver.current_max_A, driver.voltage_limit_V
     for values, least, most, close, unit, gives in (

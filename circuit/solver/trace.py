@@ -24,9 +24,6 @@ if TYPE_CHECKING:
 COLUMNS = ("icon", "time_s", "current_A", "voltage_V", "target_C", *RECORDED)
 """Columns of a trace file, in order."""
 
-POWER = "power_W"
-"""Column of the electrical power at the module, on demand."""
-
 CSV_FORMAT = "%.9g"
 
 CLOSE_K = 0.1
@@ -209,14 +206,6 @@ class Trace:
             return self.outcome.reason
         return "; ".join(self.beyond) or None
 
-    @property
-    def power_W(self) -> Array:
-        """Electrical power of the module (rows,) in W, voltage times current; NaN on a thermode.
-
-        Negative where the module returns power, as it does while a current ends that has cooled it.
-        """
-        return np.asarray(self.voltage_V * self.current_A)
-
     def probe(self, name: str) -> Array:
         """Temperature (rows,) in °C that a probe of the rig reads; raises KeyError with the probes there are."""
         for other, values in self.probes:
@@ -224,15 +213,12 @@ class Trace:
                 return values
         raise KeyError(f"no probe {name!r} in this trace; there is {', '.join(dict(self.probes)) or 'none'}")
 
-    def to_frame(self, power: bool = False) -> pd.DataFrame:
-        """Return the trace as a table with the columns of a trace file, then one `probe_<name>_C` for each probe.
-
-        `power` adds the column `power_W` after the columns of a trace file.
-        """
+    def to_frame(self) -> pd.DataFrame:
+        """Return the trace as a table with the columns of a trace file, then one `probe_<name>_C` for each probe."""
         import pandas as pd
 
         columns: dict[str, Any] = {"icon": pd.Series([self.icon] * len(self.time_s), dtype="string")}
-        columns.update({name: getattr(self, name) for name in (*COLUMNS[1:], *([POWER] if power else []))})
+        columns.update({name: getattr(self, name) for name in COLUMNS[1:]})
         columns.update({f"probe_{name}_C": values for name, values in self.probes})
         return pd.DataFrame(columns)
 
@@ -247,14 +233,11 @@ class Trace:
         return plot_temperatures(self, ax, probes)
 
 
-def write_trace(traces: Trace | list[Trace], path: str | Path, power: bool = False) -> None:
-    r"""Write traces to one table, one after the other: Parquet where the name ends in ``.parquet``, else CSV.
-
-    `power` adds the column `power_W`; NaN becomes an empty cell. Raises InputError where pyarrow is not installed.
-    """
+def write_trace(traces: Trace | list[Trace], path: str | Path) -> None:
+    """Write traces to one table: Parquet where the name ends in ``.parquet``, else CSV; NaN is an empty cell."""
     import pandas as pd
 
-    frames = [trace.to_frame(power) for trace in (traces if isinstance(traces, list) else [traces])]
+    frames = [trace.to_frame() for trace in (traces if isinstance(traces, list) else [traces])]
     table = pd.concat(frames, ignore_index=True)
     if str(path).endswith(".parquet"):
         require_pyarrow(path)

@@ -99,7 +99,6 @@ def counted(count: int, noun: str) -> str:
 
 
 def _course(entry: Icon | Family) -> str:
-    """An icon with its statements as they are written, or a family with its parameters."""
     notes = [f"“{entry.metadata.means}”"] if entry.metadata.means else []
     notes += [f"tagged {', '.join(entry.metadata.tags)}"] if entry.metadata.tags else []
     head = f"{entry.name} ({'; '.join(notes)})" if notes else entry.name

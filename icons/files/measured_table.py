@@ -104,7 +104,6 @@ def measured(
 
 
 def _times(table: Table) -> Array:
-    """The column of times, as numbers, or as times of day with or without dates."""
     cells, unit = list(table.texts(TIME)), table.names.renamed.get(TIME, ("", Unit("s")))[1]
     if not any(cells) and cells:
         raise table.fault("time", None, "time_s is empty in every row", "add the times, from the interval between rows")

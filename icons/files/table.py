@@ -109,7 +109,6 @@ class Table:
         return values
 
     def _cure(self, name: str, row: int, cell: str) -> str:
-        """What helps against a cell that is no number, by what it holds."""
         if GROUPED.fullmatch(cell):
             return "write numbers without marks between thousands"
         if (found := WITH_UNIT.fullmatch(cell)) and unit_of(found[2]):

@@ -275,7 +275,6 @@ class _Scope:
 
 
 def _field(rule: str, name: str, kind: Kind) -> str:
-    """Return the field of a statement for a value that a parameter gives."""
     if name == "rate":
         if rule == "return":
             return "rate_per_s"

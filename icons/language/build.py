@@ -24,10 +24,7 @@ _LIST_HELP = 'values are a list, "[1, 3] °C", or a range, "1..3 step 0.5 °C"'
 
 @dataclass(slots=True)
 class Builder:
-    """Turns parts of the tree into model parts; collects findings, and where each statement's parts stand in the text.
-
-    ``places`` maps ``id(statement)`` to the offsets of its parts; ``kept`` keeps those ids from being used again.
-    """
+    """Turns the tree into model parts; ``places`` of these in the text by ``id``, which ``kept`` keeps from new use."""
 
     source: Source
     findings: list[Finding] = field(default_factory=list)

@@ -196,7 +196,6 @@ def _end(case: FailedStatement) -> Finding:
 
 
 def _run(case: FailedStatement, start: int) -> list[Piece]:
-    """Return the numbers and commas from a place on."""
     found: list[Piece] = []
     for piece in case.pieces[start:]:
         if piece.kind != "number" and piece.text != ",":

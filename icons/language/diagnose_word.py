@@ -49,7 +49,6 @@ def joined(case: FailedStatement) -> Finding | None:
 
 
 def _statement_behind(case: FailedStatement) -> int | None:
-    """Return where a statement begins behind nothing but words that join, or None."""
     for piece in case.pieces[case.index :]:
         if piece.text in VOCABULARY[case.where]:
             return piece.start
@@ -216,7 +215,6 @@ def connective(case: FailedStatement) -> Finding | None:
 
 
 def _tail(case: FailedStatement) -> str:
-    """What could follow a statement that breaks off."""
     if case.first in WAVES and case.index > 2:
         period = case.quantity(5) if "FOR" in case.accepts else None
         if period:
@@ -226,7 +224,6 @@ def _tail(case: FailedStatement) -> str:
 
 
 def _joined(case: FailedStatement, words: list[str]) -> list[Edit]:
-    """Cures for a word that is not allowed here."""
     bad = case.bad
     cures = []
     if "EVERY" in case.accepts and bad.text == "for" and (time := case.quantity(case.index + 1)):

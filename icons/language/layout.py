@@ -176,7 +176,6 @@ def _header(words: list[Item]) -> list[str]:
 
 
 def _joined(words: Iterable[Item]) -> str:
-    """Return words with single spaces between them, except beside brackets, commas and dots."""
     text, before = "", "LPAR"
     for kind, word in words:
         text += word if kind in _NO_BLANK_BEFORE or before in _NO_BLANK_BEHIND else f" {word}"

@@ -98,5 +98,4 @@ class _Suggester:
 
 
 def _within(source: Source, cure: Edit, line: int) -> bool:
-    """Tell whether a cure changes one line only, the one that is shown."""
     return source.place(cure.start)[0] == line and "\n" not in source.text[cure.start : cure.end]

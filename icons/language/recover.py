@@ -353,5 +353,4 @@ def _takes(stack: Sequence[int], kind: str) -> bool:
 
 @cache
 def _states() -> Any:
-    """The table of the parser: what each state does with each kind of token."""
     return grammar().parse_interactive("").parser_state.parse_conf.states

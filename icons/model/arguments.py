@@ -149,7 +149,6 @@ def _fits(value: Any, hint: Any) -> bool:
 
 
 def _is_array(inner: tuple[Any, ...]) -> bool:
-    """Whether these are the parts of numpy's `ArrayLike`."""
     return any(getattr(each, "__module__", "").startswith("numpy._typing") for each in inner)
 
 
@@ -162,7 +161,6 @@ def _numeric(value: Any) -> bool:
 
 
 def _words(hint: Any) -> str:
-    """What an annotation takes, in words."""
     origin, inner = get_origin(hint) or hint, get_args(hint)
     if origin in (Union, UnionType):
         text = "an array of numbers" if _is_array(inner) else _or(dict.fromkeys(map(_words, inner)))
@@ -195,7 +193,6 @@ def _refused(name: str, value: Any, hint: Any) -> str:
 
 
 def _shown(value: object) -> str:
-    """A value as a message shows it: plain ones as they are, others by their class."""
     if isinstance(value, str | bytes | bool | int | float | list | tuple | NoneType):
         text = repr(value)
         return text if len(text) <= LONGEST else f"{text[: LONGEST - 2]}…{text[-1]}"

@@ -1,19 +1,14 @@
 """Corner points: an icon written out without loss, which every simulator and exporter starts from."""
 
 import math
-from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal, overload
+from typing import Literal
 
 from .motion import TOLERANCE, pieces
 from .statements import Broken, Leaf, Play, Repeat, Statement
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 Quantity = Literal["temperature_C", "current_A"]
 STEP_S = 1e-7
@@ -82,25 +77,6 @@ class Corners:
         points, steps = list(zip(self.time_s, self.value, strict=True)), set(self.steps)
         slopes = (abs(b[1] - a[1]) / (b[0] - a[0]) for n, (a, b) in enumerate(pairwise(points)) if n not in steps)
         return max(slopes, default=0.0)
-
-    @overload
-    def at(self, time_s: float) -> float: ...
-    @overload
-    def at(self, time_s: "Sequence[float] | NDArray[np.float64]") -> "NDArray[np.float64]": ...
-    def at(self, time_s: "float | Sequence[float] | NDArray[np.float64]") -> "float | NDArray[np.float64]":
-        """Return the value at a time (s), or an array of values for an array; before and after, the end values."""
-        if not isinstance(time_s, int | float):
-            import numpy as np
-
-            return np.asarray(np.interp(time_s, self.time_s, self.value), dtype=np.float64)
-        if math.isnan(time_s):
-            raise ValueError("a time must be a number, not NaN")
-        after = bisect_right(self.time_s, time_s)
-        if after == 0 or after == len(self):
-            return self.value[0] if after == 0 else self.value[-1]
-        t0, t1 = self.time_s[after - 1], self.time_s[after]
-        v0, v1 = self.value[after - 1], self.value[after]
-        return v0 + (v1 - v0) * ((time_s - t0) / (t1 - t0))
 
 
 def written_out(body: Sequence[Statement | Broken]) -> Iterator[Leaf]:

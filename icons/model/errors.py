@@ -1,8 +1,4 @@
-"""What can be wrong with a cue file: one error with its place, and the exception that carries them.
-
-What each code means stands in ``data/mistakes.toml``: the file as a whole (E0..), words, numbers and units (E1..),
-meaning (E2..).
-"""
+"""One error of a cue file with its place, and the exception that carries them; ``data/mistakes.toml`` has the codes."""
 
 import tomllib
 import unicodedata
@@ -65,11 +61,12 @@ class CueError:
         else:
             before, shown, after = _window(self.source, self.column - 1, self.length)
             gutter = " " * len(str(self.line))
+            text = (char if char == "\t" or char.isprintable() else "�" for char in before + shown + after)
             pad = "".join("\t" if char == "\t" else " " * _width(char) for char in before)
             carets = "^" * max(1, sum(_width(char) for char in shown))
             rows = [
                 f"{self.file}:{self.line}:{self.column}  {self.code} {self.title}",
-                f"  {self.line} | {_visible(before + shown + after)}",
+                f"  {self.line} | {''.join(text)}",
                 f"  {gutter} | {pad}{carets} {self.what}",
             ]
         if self.help:
@@ -118,7 +115,6 @@ class CueErrors(InputError):
         return "\n\n".join(parts)
 
     def _render_traceback_(self) -> list[str]:
-        """Return the lines that IPython shows in place of a traceback."""
         return str(self).split("\n")
 
 
@@ -142,7 +138,3 @@ def _width(char: str) -> int:
     if unicodedata.combining(char):
         return 0
     return 2 if unicodedata.east_asian_width(char) in "WF" else 1
-
-
-def _visible(text: str) -> str:
-    return "".join(char if char == "\t" or char.isprintable() else "�" for char in text)

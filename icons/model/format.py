@@ -115,7 +115,6 @@ def quoted(text: str) -> str:
 
 
 def _needed(icon: "Icon | Family", found: "dict[str, Icon]") -> "dict[str, Icon]":
-    """Icons that an icon plays, each after those that it plays itself."""
     from .icon import played_icons
 
     for played in played_icons(_body(icon)):

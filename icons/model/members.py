@@ -101,10 +101,7 @@ class Expander:
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """Over all members: durations (s), levels (°C or A) and the steepest rate (K/s or A/s) that is not a step.
-
-    The rate of a sine is that of the curve, and a level between two steps in one moment counts.
-    """
+    """Over all members: durations (s), levels (°C or A) and the steepest rate (K/s or A/s) that is not a step."""
 
     shortest_s: float
     longest_s: float

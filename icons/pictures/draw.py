@@ -140,7 +140,6 @@ def _overlay(icons: Sequence[Icon], labels: Sequence[str], title: str, ax: Axes 
 
 
 def _directed(ax: Axes, corners: Corners, width: float, alpha: float) -> None:
-    """Add the pieces of a curve, each in the colour of its direction."""
     from matplotlib.collections import LineCollection
 
     pieces = list(pairwise(zip(corners.time_s, corners.value, strict=True)))

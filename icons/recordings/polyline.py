@@ -37,10 +37,7 @@ _MOST_DECIMALS = 12
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """Readings (readings,) at times that rise; a path may be ``room`` off each, and has corners at those ``fixed``.
-
-    ``late`` is how much later than recorded a reading stands, since a step takes an instant.
-    """
+    """Readings (readings,) that a path may be ``room`` off, with ``fixed`` corners, and how ``late`` steps make it."""
 
     time: Array
     value: Array
@@ -74,22 +71,8 @@ class Course:
         return np.clip(np.searchsorted(times, self.time, side="right") - 1, 0, len(times) - 2)
 
     def cuts(self, limit: float) -> NDArray[np.intp]:
-        """Return the readings between whose chords none is more than `limit` of its room off (Douglas & Peucker 1973).
-
-        Time goes with readings times cuts at the worst.
-        """
-        ends = np.flatnonzero(self.fixed).tolist()
-        cuts, pieces = set(ends), list(pairwise(ends))
-        while pieces:
-            first, last = pieces.pop()
-            inner, both = slice(first + 1, last), [first, last]
-            off = np.abs(self.value[inner] - np.interp(self.time[inner], self.time[both], self.value[both]))
-            off /= self.room[inner]
-            if off.size and off.max() > limit:
-                cut = first + 1 + int(off.argmax())
-                cuts.add(cut)
-                pieces += [(first, cut), (cut, last)]
-        return np.array(sorted(cuts))
+        """Return the readings between whose chords none is more than `limit` of its room off."""
+        return np.array(cuts_of(self.time, self.value, self.room, np.flatnonzero(self.fixed).tolist(), limit))
 
     def fit(self, times: Array) -> Path:
         """Return the path with corners near these times that fits best by least squares; it may leave the room."""
@@ -151,6 +134,23 @@ class Course:
         square = csc_array(diags_array([beside, own + hold, beside], offsets=[-1, 0, 1]))
         vector = shared.T @ (pull + hold * np.interp(times, self.time, self.value))
         return np.asarray(np.atleast_1d(np.asarray(spsolve(csc_array(shared.T @ square @ shared), vector)))[column])
+
+
+def cuts_of(time: Array, value: Array, room: Array, ends: list[int], limit: float) -> list[int]:
+    """Places between whose chords no value is more than `limit` of its room off, from `ends` (Douglas & Peucker 1973).
+
+    Time goes with values times cuts at the worst.
+    """
+    cuts, pieces = set(ends), list(pairwise(ends))
+    while pieces:
+        first, last = pieces.pop()
+        inner, both = slice(first + 1, last), [first, last]
+        off = np.abs(value[inner] - np.interp(time[inner], time[both], value[both])) / room[inner]
+        if off.size and off.max() > limit:
+            cut = first + 1 + int(off.argmax())
+            cuts.add(cut)
+            pieces += [(first, cut), (cut, last)]
+    return sorted(cuts)
 
 
 def course_of(time: Array, reading: Array, tolerance: float, start: float | None = None) -> Course:

@@ -161,18 +161,13 @@ def _statements(times: Sequence[float], levels: Sequence[float]) -> Iterator[Sta
     for (start, before), (end, after) in pairwise(zip(times, levels, strict=True)):
         duration = round(end - start, 9)
         if duration == 0:
-            yield _at_once(before, after)
+            yield Step("warm" if after > before else "cool", to_C=after)
         elif before == after:
             yield Rest(duration) if after == baseline else Hold(duration)
         elif after == baseline:
             yield Return(duration_s=duration)
         else:
             yield Ramp("warm" if after > before else "cool", to_C=after, duration_s=duration)
-
-
-def _at_once(before: float, after: float) -> Statement:
-    """What a step of the recording becomes: two readings at one time. Here, and only here, that is decided."""
-    return Step("warm" if after > before else "cool", to_C=after)
 
 
 def _name(path: Path) -> str:
@@ -222,11 +217,13 @@ def _readings(file: str, data: bytes, column: str | None, columns: Mapping[str, 
             what = f"{chosen} is {level:g}; an icon keeps to {LOWEST_C:g} to {HIGHEST_C:g} °C".replace("-", "−")
             raise fault("unit", line, what, "correct or remove the reading, if it is an error of the sensor")
     notes = tuple(f"{file}: {note}" for note in found.notes)
-    return Readings(file, chosen, _from_zero(times), tuple(levels), found.lines[0], notes)
+    # From 0 s on, without the stray digits that differences of large times have.
+    digits = min(9, math.floor(-math.log10(math.ulp(max(abs(times[0]), abs(times[-1]))))))
+    rising = tuple(round(time - times[0], digits) for time in times)
+    return Readings(file, chosen, rising, tuple(levels), found.lines[0], notes)
 
 
 def _column(place: str, table: Table, column: str | None) -> str:
-    """Return the column with the temperatures."""
     known = [cell for cell in table.header if cell in CONTROL_OF]
     if column is None and len(known) > 1:
         what = f"{' and '.join((', '.join(known[:-1]), known[-1]))} are all temperatures"
@@ -238,9 +235,3 @@ def _column(place: str, table: Table, column: str | None) -> str:
         what = f"no temperature is called {chosen!r}; found {table.found}"
         raise whole_file("E013", place, what, "the name must be spelled as in the file")
     return chosen
-
-
-def _from_zero(times: list[float]) -> tuple[float, ...]:
-    """Return times from 0 s, without the stray digits that differences of large times have."""
-    digits = min(9, math.floor(-math.log10(math.ulp(max(abs(times[0]), abs(times[-1]))))))
-    return tuple(round(time - times[0], digits) for time in times)

@@ -63,7 +63,6 @@ def set_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
 
 
 def _row(played: Played) -> dict[str, str]:
-    """The condition of one icon: its files, the times in s of its events by their columns, and the verdict."""
     row = {"icon": played.delivery.icon.name, "drive_file": played.file, "sidecar_file": played.sidecar}
     row["safety"] = played.safety
     times: dict[str, float | None] = dict(zip(JUDGED[1:], (played.recovery_s, played.shortest_pause_s), strict=True))
@@ -105,7 +104,6 @@ def _player(drives: Sequence[Played], must: MustPrevent) -> bytes:
 
 
 def _column(name: str, k: int) -> str:
-    """Column of an event that happens for the k-th time, from 0."""
     return f"{name.replace(' ', '_')}{f'_{k + 1}' if k else ''}_s"
 
 

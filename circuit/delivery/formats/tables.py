@@ -155,7 +155,6 @@ def serial_write(delivery: DeliveredDrive) -> bytes:
 
 
 def _check(setpoints: Setpoints, device: str) -> None:
-    """Raise FormatError where the commands would differ from the set-points."""
     if abs(setpoints.tick_s - TICK_S) > 1e-9 or abs(setpoints.step_K - STEP_K) > 1e-9:
         raise FormatError(
             f"tcs2-serial counts ticks of {TICK_S * 1e3:g} ms and steps of {STEP_K:g} K; {device} has "

@@ -1,8 +1,4 @@
-"""Files of waveforms: WAV for sound outputs that are DC-coupled, and NI TDMS.
-
-WAV is 16-bit PCM at a rate that sound interfaces play; outputs that are not DC-coupled lose every held level. A drive
-has far fewer updates than a sound has frames: each is repeated a whole number of times. Nothing is resampled.
-"""
+"""Files of waveforms: 16-bit WAV for DC-coupled sound outputs, each update a whole number of frames; and NI TDMS."""
 
 import io
 import wave

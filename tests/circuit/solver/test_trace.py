@@ -81,10 +81,6 @@ def test_columns_and_rows(trace: Trace) -> None:
     assert frame["time_s"].iloc[-1] == 8.0
     assert set(frame["icon"]) == {"cooling-step"}
     assert trace.heat_flow_skin_W_per_m2[0] == pytest.approx(-78.7, abs=0.1)
-    power = trace.to_frame(power=True)
-    assert list(power.columns) == [*COLUMNS, "power_W"]
-    assert power["power_W"].to_numpy() == pytest.approx(trace.voltage_V * trace.current_A, abs=1e-9)
-    assert simulate(STEP, Rig.load("tcs2")).to_frame(power=True)["power_W"].isna().all()
     off_the_grid = simulate_current(Drive([0, 0.255], [0.1, 0.1]), THENAR)
     assert off_the_grid.time_s[-2:].tolist() == [0.25, 0.255]
 

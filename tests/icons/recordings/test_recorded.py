@@ -41,7 +41,7 @@ def test_a_recording_becomes_an_icon_that_reads_well(tmp_path: Path) -> None:
         "  cool to 26 °C over 2 s\n  hold for 4 s\n  return over 2 s\n  rest for 2 s\n}\n"
     )
     assert parse(str(icon))["my-dip-2"] == icon
-    assert np.abs(icon.corners().at(time) - value).max() <= 0.05
+    assert np.abs(np.interp(time, icon.corners().time_s, icon.corners().value) - value).max() <= 0.05
 
 
 @pytest.mark.parametrize("written_by", MESSAGES["tables"])

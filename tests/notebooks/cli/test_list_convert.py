@@ -61,6 +61,6 @@ def test_a_recording_becomes_an_icon(cli: Cli, tmp_path: Path) -> None:
     assert said.stderr == f"cold: 4 corners, 8 s\nwrote {out}: 1 icon\n"
     (icon,) = read_cue(out)
     assert (icon.name, icon.context.control) == ("cold", "skin")
-    assert abs(icon.corners().at(4) - 26) < 0.2
+    assert min(icon.corners().value) == pytest.approx(26, abs=0.2)
     cli.good("convert", path, "-o", tmp_path / "dip.json", *options)
     assert (tmp_path / "dip.json").read_text(encoding="utf-8") == to_json(read_cue(out))

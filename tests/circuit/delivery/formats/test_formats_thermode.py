@@ -58,7 +58,8 @@ class TestSerial:
         levels = [baseline, *(level for _, level in pairs)]
         corners = icon.corners()
         grid = np.linspace(0, corners.duration_s, 200)
-        assert np.abs(np.interp(grid, times, levels) - corners.at(grid)).max() <= 0.05 + 1e-9
+        cue = np.interp(grid, corners.time_s, corners.value)
+        assert np.abs(np.interp(grid, times, levels) - cue).max() <= 0.05 + 1e-9
         assert times[-1] == pytest.approx(corners.duration_s, abs=0.005)
 
     def test_cooling_is_timed_as_warming_is_and_a_quarter_of_a_degree_a_second_is_no_fifth(self) -> None:
