@@ -178,7 +178,7 @@ def _judged_courses(materials: Materials, courses: tuple[Course, ...]) -> tuple[
     if threshold is None:
         return courses
     strongest = materials.chosen[-1].name
-    trials = tuple(Trial(place, 1, place, strongest) for place in range(1, threshold.trials + 1))
+    trials = tuple(Trial(1, number, strongest) for number in range(1, threshold.trials + 1))
     return (Course("any", trials),)
 
 

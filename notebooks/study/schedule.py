@@ -22,7 +22,6 @@ from .study_file import Study, StudyError, labels_of
 class Trial:
     """One play: `block` 0 is practice; `trial` counts the answers that are kept, from 1, and is 0 in practice."""
 
-    place: int
     block: int
     trial: int
     icon: str
@@ -99,7 +98,7 @@ def courses_of(study: Study, icons: tuple[str, ...], seed: int) -> tuple[Course,
         for block, places in enumerate(blocks):
             for place in places:
                 number = sum(row.block > 0 for row in rows) + 1 if block else 0
-                rows.append(Trial(len(rows) + 1, block, number, icons[place]))
+                rows.append(Trial(block, number, icons[place]))
         courses.append(Course(label, tuple(rows)))
     return tuple(courses)
 

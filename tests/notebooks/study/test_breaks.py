@@ -21,7 +21,7 @@ COLD, WARM = ("cooling-step", "linear-cooling") * 2, ("warming-step", "linear-wa
 def course(label: str, *blocks: tuple[str, ...]) -> Course:
     rows: list[Trial] = []
     for number, block in enumerate(blocks, 1):
-        rows += [Trial(len(rows) + k, number, len(rows) + k, icon) for k, icon in enumerate(block, 1)]
+        rows += [Trial(number, len(rows) + k, icon) for k, icon in enumerate(block, 1)]
     return Course(label, tuple(rows))
 
 
