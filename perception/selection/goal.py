@@ -225,7 +225,7 @@ def _part(number: int, text: str, tree: Any) -> GoalPart:
     if unit not in known.units:
         units = " or ".join(each or "no unit" for each in known.units)
         raise GoalError(f"{where}: {name} is given in {units}, not {unit or 'without a unit'}")
-    if unit == "%" and value < 1.0:
+    if unit == "%" and 0.0 < value < 1.0:
         raise GoalError(
             f"{where}: {value:g} % is next to nothing: write {100.0 * value:g} %, or {value:g} without unit"
         )
