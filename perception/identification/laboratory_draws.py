@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -159,8 +160,8 @@ SAMPLES, LEAST, NAMED = 512, 128, 8192
 class LaboratoryDraws:
     """Predictions of a set by every draw: what `sensitivity` reads and intervals are made of.
 
-    `values` (draws, constants) belong to `names`, and `acts` (constants,) says which of them take part in how the set
-    is named on its rig; `proportion_correct` and `information_bits` (draws,) are means over
+    `values` (draws, constants) belong to `names`, and `acting` says which of them (constants,) take part in how the set
+    is named on its rig, when it is asked; `proportion_correct` and `information_bits` (draws,) are means over
     the people of a draw, `detected` and `onset_s` (draws, icons; NaN where an icon is not felt), `d_prime` (draws,
     icons, icons) their medians, `confused` (draws, icons, icons) the mean of both ways, correct on the diagonal.
     `persons_correct`, `persons_bits` (draws, people) and `persons_detected` (draws,
@@ -169,7 +170,7 @@ class LaboratoryDraws:
 
     names: tuple[str, ...]
     values: Array
-    acts: NDArray[np.bool_]
+    acting: Callable[[], NDArray[np.bool_]]
     proportion_correct: Array
     information_bits: Array
     detected: Array
@@ -215,8 +216,8 @@ def laboratory_draws(
         if step is not None:
             step()
     each = (np.stack([scores[k] for scores in found]) for k in range(9))
-    acts = _acting(laboratories, played(0), min(count, FEW), norm, seed, task)
-    return LaboratoryDraws(laboratories.names, laboratories.values, acts, *each)
+    acting = cache(partial(_acting, laboratories, played(0), min(count, FEW), norm, seed, task))
+    return LaboratoryDraws(laboratories.names, laboratories.values, acting, *each)
 
 
 def _acting(
