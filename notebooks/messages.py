@@ -25,7 +25,7 @@ Progress = Callable[[int, int], None]
 BAD_INPUT = 1
 REFUSED = 3
 INTERRUPTED = 130
-USUAL_COLUMNS = 80
+USUAL_SIZE = 80, 24
 DEFAULT_RIG = "thenar"
 _QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
 _VERBOSE: ContextVar[bool] = ContextVar("verbose", default=False)
@@ -245,8 +245,13 @@ def progress_bar(what: str) -> Iterator[Progress | None]:
     from tqdm import tqdm
 
     form = "{desc}: {bar} {n_fmt}/{total_fmt}, {remaining} left"
-    with tqdm(desc=what, leave=False, file=sys.stderr, bar_format=form) as bar:
-        bar.ncols = bar.ncols or USUAL_COLUMNS  # some terminals do not say how wide they are
+    try:
+        size = os.get_terminal_size(sys.stderr.fileno())
+    except OSError:
+        size = os.terminal_size((0, 0))
+    # Some terminals do not say how large they are, and have no room for a bar then.
+    room = {"ncols": size.columns or USUAL_SIZE[0], "nrows": size.lines or USUAL_SIZE[1]}
+    with tqdm(desc=what, leave=False, file=sys.stderr, bar_format=form, **room) as bar:
 
         def advance(done: int, total: int) -> None:
             bar.total = total

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -150,7 +151,8 @@ SAMPLES, LEAST, NAMED = 512, 128, 8192
 class LaboratoryDraws:
     """Predictions of a set by every draw: what `sensitivity` reads and intervals are made of.
 
-    `values` (draws, constants) belong to `names`; `acts` (constants,) says which take part in how the set is named.
+    `values` (draws, constants) belong to `names`; `acting` says, when asked, which (constants,) take part in how
+    the set is named.
     Scores (draws,) are means over the people of a draw, `detected`, `onset_s` (draws, icons; NaN: not felt) and
     `d_prime` (draws, icons, icons) medians, `confused` the mean of both ways; `persons_…` (draws, people) are those of
     single people, detection by the icon that a person detects least.
@@ -158,7 +160,7 @@ class LaboratoryDraws:
 
     names: tuple[str, ...]
     values: Array
-    acts: NDArray[np.bool_]
+    acting: Callable[[], NDArray[np.bool_]]
     proportion_correct: Array
     information_bits: Array
     detected: Array
@@ -203,8 +205,8 @@ def laboratory_draws(
         if step is not None:
             step()
     each = (np.stack([scores[k] for scores in found]) for k in range(9))
-    acts = _acting(laboratories, played(0), min(count, FEW), norm, seed, task)
-    return LaboratoryDraws(laboratories.names, laboratories.values, acts, *each)
+    acting = cache(partial(_acting, laboratories, played(0), min(count, FEW), norm, seed, task))
+    return LaboratoryDraws(laboratories.names, laboratories.values, acting, *each)
 
 
 def _acting(

@@ -62,7 +62,7 @@ def doubts(each: LaboratoryDraws) -> list[dict[str, str | float]]:
     shares = explained(each.values, each.proportion_correct).tolist()
     found = [
         {"constant": name, "share_of_variance": share}
-        for name, share, acts in zip(each.names, shares, each.acts, strict=True)
+        for name, share, acts in zip(each.names, shares, each.acting(), strict=True)
         if acts and share >= LEAST_SHARE
     ]
     return sorted(found, key=lambda doubt: (-doubt["share_of_variance"], doubt["constant"]))
@@ -236,7 +236,7 @@ def _of_draws(draws: LaboratoryDraws) -> list[Assumption]:
     if count < FEWEST_DRAWS or np.ptp(predicted) == 0.0:
         return []
     found = []
-    for name, values, acts in zip(draws.names, draws.values.T, draws.acts, strict=True):
+    for name, values, acts in zip(draws.names, draws.values.T, draws.acting(), strict=True):
         if not acts:
             continue
         scores = scores_of(values)

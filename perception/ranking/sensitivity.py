@@ -243,7 +243,7 @@ def sensitivity(
         [parameter.at(float(share)) for share in column]
         for parameter, column in zip(uncertain.parameters, shares.T, strict=True)
     ]
-    acting = np.flatnonzero(each.acts)
+    acting = np.flatnonzero(each.acting())
     names = (*(each.names[k] for k in acting), *(parameter.name for parameter in uncertain.parameters))
     values = np.hstack([each.values[:, acting], np.array(columns).T])
     low, middle, high = np.percentile(each.proportion_correct, [2.5, 50.0, 97.5]).tolist()

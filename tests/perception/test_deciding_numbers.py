@@ -25,7 +25,9 @@ DT = 0.01
 
 def drawn(values: np.ndarray, correct: np.ndarray) -> LaboratoryDraws:
     names = tuple(f"constant {k}" for k in range(values.shape[1]))
-    return LaboratoryDraws(names, values, np.ones(len(names), bool), correct, *[np.zeros((len(correct), 1))] * 8)
+    return LaboratoryDraws(
+        names, values, lambda: np.ones(len(names), bool), correct, *[np.zeros((len(correct), 1))] * 8
+    )
 
 
 def scores(count: int) -> np.ndarray:

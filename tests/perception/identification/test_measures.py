@@ -155,7 +155,7 @@ def test_only_constants_that_take_part_are_doubted(ranking: Ranking) -> None:
     away = rank(SIX, smaller, people=4, parameters=4)
     for found, some, others in ((ranking, idle | of_a_site, set()), (away, idle, of_a_site)):
         each = found.new_laboratory.each
-        acting = {name for name, acts in zip(each.names, each.acts, strict=True) if acts}
+        acting = {name for name, acts in zip(each.names, each.acting(), strict=True) if acts}
         assert acting.isdisjoint(some)
         assert acting >= {"memory noise (episodes)", "laboratory, cold", "gain noise", "cold receptor depth", *others}
         assert acting >= {doubt["constant"] for doubt in doubts(each)}

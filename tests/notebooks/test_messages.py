@@ -1,0 +1,46 @@
+"""Progress on a terminal."""
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.notebooks.study.conftest import QUICK, write_study
+from thermicon.notebooks.messages import progress_bar
+from thermicon.notebooks.study import build
+from thermicon.notebooks.study.judging import Refused
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a pseudo-terminal")
+def test_a_bar_says_what_is_left_also_where_the_terminal_says_no_width(monkeypatch: pytest.MonkeyPatch) -> None:
+    here, there = os.openpty()  # its size is 0 × 0
+    with os.fdopen(there, "w") as terminal:
+        monkeypatch.setattr(sys, "stderr", terminal)
+        with progress_bar("thinking") as advance:
+            assert advance is not None
+            said = os.read(here, 4096).decode()
+    os.close(here)
+    assert "thinking: " in said and " left" in said
+
+
+def test_a_study_says_its_plan_before_it_is_judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[str] = []
+
+    @contextmanager
+    def bar(what: str) -> Iterator[Any]:
+        told.append(what)
+        yield lambda done, total: told.append("a step")
+
+    def refused(*_: Any) -> Any:
+        raise Refused(["stop"])
+
+    monkeypatch.setattr(build, "judge_drives", refused)
+    with pytest.raises(Refused):
+        build.make_plan(build.read_materials(write_study(tmp_path, QUICK)), bar, told.append)
+    gap, step, *_, plan, drives = told
+    assert (gap, step, drives) == ("gap", "a step", "drives")
+    assert "plays each" in plan and " min each, gap " in plan
