@@ -9,6 +9,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from pathlib import Path
+from shutil import get_terminal_size
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 import typer
@@ -25,7 +26,6 @@ Progress = Callable[[int, int], None]
 BAD_INPUT = 1
 REFUSED = 3
 INTERRUPTED = 130
-USUAL_SIZE = 80, 24
 DEFAULT_RIG = "thenar"
 _QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
 _VERBOSE: ContextVar[bool] = ContextVar("verbose", default=False)
@@ -245,13 +245,8 @@ def progress_bar(what: str) -> Iterator[Progress | None]:
     from tqdm import tqdm
 
     form = "{desc}: {bar} {n_fmt}/{total_fmt}, {remaining} left"
-    try:
-        size = os.get_terminal_size(sys.stderr.fileno())
-    except OSError:
-        size = os.terminal_size((0, 0))
-    # Some terminals do not say how large they are, and have no room for a bar then.
-    room = {"ncols": size.columns or USUAL_SIZE[0], "nrows": size.lines or USUAL_SIZE[1]}
-    with tqdm(desc=what, leave=False, file=sys.stderr, bar_format=form, **room) as bar:
+    size = get_terminal_size()  # 80 by 24 where a terminal does not say how large it is, and has no room for a bar
+    with tqdm(desc=what, leave=False, file=sys.stderr, bar_format=form, ncols=size.columns, nrows=size.lines) as bar:
 
         def advance(done: int, total: int) -> None:
             bar.total = total
