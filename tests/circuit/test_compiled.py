@@ -228,6 +228,8 @@ def test_a_private_folder_has_private_folders_above(tmp_path: Path) -> None:
     with pytest.raises(NotPrivate, match="open can be written by others"):
         private_folder(open_)
     open_.chmod(0o1777)
+    with pytest.raises(NotPrivate, match="open can be written by others"):
+        private_folder(open_)  # where all may put files, only a folder below is one's own
     assert private_folder(open_ / "mine").is_dir()
     if os.geteuid() == 0:
         os.chown(open_ / "mine", 12345, 12345)

@@ -17,6 +17,7 @@ from thermicon.circuit import Device, Export, Gate, Rig, export
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.pack import pack
 from thermicon.icons import load_library, parse, read_cue
+from thermicon.icons.number_text import number
 from thermicon.notebooks.report.gate_words import gate_words
 from thermicon.notebooks.workbench.view_blocks import delivered_html, gate_html
 
@@ -264,6 +265,11 @@ def test_what_no_watchdog_and_no_rest_can_do_is_said(glow: Export) -> None:
     assert demanded.startswith("a current that cannot hang (glow), for which no watchdog is quick enough, cut-off")
     assert "a display at its baseline before it touches the skin (glow)" in demanded
     assert "zero current in contact for 120 s at most" in demanded
+    cut = gate.demands.cut_off_display_C
+    warmer = replace(gate.demands, cut_off_display_C=replace(cut, low=cut.low + 1.0, high=cut.high + 1.0))
+    both = [replace(glow.prepared[0], verdict=replace(gate, demands=each)) for each in (gate.demands, warmer)]
+    demanded = dict(gate_words(both))["the hardware must provide"]
+    assert f"cut-off at {number(cut.low + 1.0, 1)} and {number(cut.high, 1)} °C" in demanded
 
 
 def test_the_page_of_the_gate_has_every_check_with_its_scenario_and_each_source_once() -> None:

@@ -1,7 +1,11 @@
 """Sentences of reports: counts in the singular, goals, choices, and how far few participants reach."""
 
+import pytest
+
 from thermicon.notebooks.report.choices import choice_lines, goal_lines
+from thermicon.notebooks.report.plan_report import designs_table
 from thermicon.perception import Goal
+from thermicon.perception.pilot.plan import Design, Plan
 from thermicon.perception.selection.appraise import Appraisal
 from thermicon.perception.selection.choose import Choice
 from thermicon.perception.selection.goal_result import GoalPartResult, GoalResult
@@ -41,3 +45,16 @@ def test_what_a_share_of_people_means_is_said_once_and_in_a_short_line() -> None
     assert max(map(len, lines)) <= 100
     assert not any("share" in line for line in goal_lines(GoalResult(Goal((goal.parts[2],)), parts[2:])))
     assert not any("For a share" in line for line in goal_lines(GoalResult(goal, parts), "met by the best 4"))
+
+
+@pytest.mark.parametrize(("found", "starred"), [((None, None), [False, True]), ((0.7, 0.9), [False, True])])
+def test_the_star_of_a_plan_stands_at_sizes_that_are_enough(
+    found: tuple[float | None, ...], starred: list[bool]
+) -> None:
+    """Of one set the width of the interval counts, of two the power."""
+    sizes = tuple(
+        Design(10, trials, width, power) for trials, width, power in zip((24, 48), (0.12, 0.08), found, strict=True)
+    )
+    plan = Plan((), None, sizes, 0.1 if found[0] is None else 0.8, "thenar", (), "episodes", 0, 8, "0")
+    (row,) = designs_table(plan).rows
+    assert ["*" in cell.text for cell in row[1:]] == starred

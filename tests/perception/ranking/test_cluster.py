@@ -104,3 +104,12 @@ def test_a_worker_is_killed_and_the_bytes_are_those_of_one_machine(
     assert codes[0] == -signal.SIGKILL
     assert done[-1] > 3, "parts were left when it was killed"
     assert far == local
+
+
+def test_what_a_worker_with_other_code_computed_is_refused() -> None:
+    from types import SimpleNamespace
+
+    own, other = (SimpleNamespace(result=lambda code=code: (code, "scores")) for code in (batches.code_digest(), "x"))
+    assert cluster._result(own, "tcp://a") == "scores"
+    with pytest.raises(ClusterError, match="tcp://a has another version of thermicon"):
+        cluster._result(other, "tcp://a")

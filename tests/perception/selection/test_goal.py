@@ -44,6 +44,12 @@ def test_what_cannot_be_read_is_said_with_its_place_and_cure(text: str) -> None:
     [
         ("90 % correct for 95 % of people", "correct >= 90 % for 95 % of people"),
         ("95 % detected, 10 s time, safety green", "detected >= 95 %, time <= 10 s, safety green"),
+        ("energy <= 0.005 kJ", "energy <= 5 J"),
+        ("energy <= 5000 mJ", "energy <= 5 J"),
+        ("time <= 0.5 min", "time <= 30 s"),
+        ("onset <= 1500 ms", "onset <= 1.5 s"),
+        ("correct >= 0.9", "correct >= 90 %"),
+        ("bits >= 2 bit", "bits >= 2"),
     ],
 )
 def test_a_goal_can_be_said_as_people_say_it(said: str, meant: str) -> None:
