@@ -14,7 +14,7 @@ from thermicon.circuit import Rig
 
 from ..experiments.measure import ADAPTIVE, Condition, Setting, logs_of
 from ..identification.skin_alone import noticed_K
-from ..observer.channels import CHANNELS, Channel, Variable, sign_of
+from ..observer.channels import CHANNELS, SIGN, Channel, Variable
 from ..observer.mechanisms.age import YOUNG_YEARS
 from ..observer.observer import Observer, load_thresholds
 from ..sensation.bench import Bench, Stimulus, Surface, raised_cosine, ramp
@@ -150,7 +150,7 @@ def peak_lead(variable: Variable = "temperature", *, draws: int = DRAWS, seed: i
     def lead(surface: Surface, channel: Channel, person: Observer) -> float:
         played = _pulse(channel)
         peak = perceive(played.traces[0], person).felt_peak_s(channel)
-        moved = sign_of(channel) * played.surface_C(surface)[0]
+        moved = SIGN[channel] * played.surface_C(surface)[0]
         return float(np.inf) if peak is None else peak - float(played.time_s[int(moved.argmax())])
 
     def onset(play: Callable[[Channel], Stimulus], channel: Channel, person: Observer) -> float:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..observer.channels import Channel, sign_of
+from ..observer.channels import SIGN, Channel
 from .laboratory import DT_S, FEEBLE, Corner, Laboratory, samples_of
 
 DISCREPANCY = 0.05
@@ -43,7 +43,7 @@ class Ramp:
     @property
     def corners(self) -> tuple[Corner, ...]:
         """Where it ends: time in s and change in K."""
-        return ((self.size_K / self.rate_K_per_s, sign_of(self.channel) * self.size_K),)
+        return ((self.size_K / self.rate_K_per_s, SIGN[self.channel] * self.size_K),)
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,6 @@ from ..arrays import Array
 from ..observer.channels import CHANNELS, USUAL_NORM, Channel
 from ..observer.observer import Observer
 from ..observer.people import draw_people
-from ..sensation.features import receptor_C
 from ..sensation.percept import Percept, perceive
 from .episodes import dprimes_from_memory
 from .population import RATE_HZ, ReceptorTemperatures, population_detection, run_end_s
@@ -143,7 +142,7 @@ def detected_as_delivered(
 
 def _change(met_K: Array, channel: Channel, designed: Trace, delivered: Trace, at_s: Array) -> Array:
     """What the device changes (people, icons, n_time), K: for the nominal person, in proportion to each `met_K`."""
-    before, after = (np.interp(at_s, each.time_s, receptor_C(each, channel)) for each in (designed, delivered))
+    before, after = (np.interp(at_s, t.time_s, getattr(t, f"{channel}_receptor_C")) for t in (designed, delivered))
     icon = before - before[0]
     size = float(icon @ icon)
     gain = (met_K @ icon)[..., None] / size if size > 0.0 else 1.0

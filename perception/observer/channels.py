@@ -5,6 +5,7 @@ Two variants: temperature at receptor depth, or heat flow there (the hypothesis 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Literal, get_args
 
 Channel = Literal["cold", "warm"]
@@ -15,10 +16,8 @@ NORMS: tuple[Norm, ...] = get_args(Norm)
 USUAL_NORM: Norm = "episodes"
 
 
-def sign_of(channel: Channel) -> float:
-    """Direction that a channel answers to: −1 cooling, +1 warming."""
-    return -1.0 if channel == "cold" else 1.0
-
+SIGN: Mapping[Channel, float] = {"cold": -1.0, "warm": 1.0}
+"""Direction that a channel answers to: cooling or warming."""
 
 Variable = Literal["temperature", "heat flow"]
 VARIABLES: tuple[Variable, ...] = get_args(Variable)

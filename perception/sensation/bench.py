@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from ..arrays import Array
-from ..observer.channels import Channel, sign_of
+from ..observer.channels import SIGN, Channel
 from ..observer.constants import Both
 from ..observer.observer import Observer
 from .percept import perceive_many
@@ -105,6 +105,6 @@ STEP_S = 0.05
 def raised_cosine(channel: Channel, size_K: float, duration_s: float) -> str:
     """Course of one smooth pulse, size·(1 − cos 2πt/T)/2, whose corners lie on the curve."""
     time = STEP_S * np.arange(round(duration_s / STEP_S) + 1)
-    levels = sign_of(channel) * 0.5 * size_K * (1.0 - np.cos(2.0 * np.pi * time / duration_s))
+    levels = SIGN[channel] * 0.5 * size_K * (1.0 - np.cos(2.0 * np.pi * time / duration_s))
     moved = np.diff(levels.round(6)).tolist()
     return "\n".join(f"{'warm' if by > 0 else 'cool'} by {abs(by):.9g} K over {STEP_S:g} s" for by in moved)

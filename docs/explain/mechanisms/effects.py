@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from thermicon.circuit.solver.modes import thermode_modes
 from thermicon.perception.arrays import Array
 from thermicon.perception.experiments.laboratory import Corner, course_of, load_rig
-from thermicon.perception.observer.channels import CHANNELS, Channel, sign_of
+from thermicon.perception.observer.channels import CHANNELS, SIGN, Channel
 from thermicon.perception.observer.mechanisms.limits import NO_LIMIT_C
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.sensation.detection import detect
@@ -186,7 +186,7 @@ def _felt(
 
 def _noticed(sizes_K: Array, observer: Observer, criterion: ArrayLike = 1.0) -> Array:
     """Probability (sizes,) that a fall is noticed, false alarms taken out."""
-    time, sign = _clock(4.0), sign_of("cold")
+    time, sign = _clock(4.0), SIGN["cold"]
     felt = np.stack(
         [_felt([(size / 2.5, sign * size), (time[-1], sign * size)], "cold", observer, time) for size in sizes_K]
     )

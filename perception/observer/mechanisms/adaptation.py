@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from ...arrays import Array, as_rows
 from ...kernels.parallel import over_rows
-from ..channels import Channel, sign_of
+from ..channels import SIGN, Channel
 from ..constants import Both, constant
 from .limits import Limits
 
@@ -44,7 +44,7 @@ class Adaptation(Limits):
 
         rows, shape = as_rows(received)
         drive = np.empty_like(rows)
-        sign, limit, (low, high) = sign_of(channel), self.limit_C.of(channel), self.neutral(channel)
+        sign, limit, (low, high) = SIGN[channel], self.limit_C.of(channel), self.neutral(channel)
         times = self.integration_s, self.adaptation_s
 
         def work(part: slice) -> None:
