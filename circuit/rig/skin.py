@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..arrays import Array
-from ..records import Table, shipped_records
+from ..records import RecordTable, shipped_records
 from .faults import sentence
 
 STRATUM_CORNEUM = "stratum corneum"
@@ -25,7 +25,7 @@ display by 30 to 50 °C.
 """
 
 
-def layer_spreads() -> Table:
+def layer_spreads() -> RecordTable:
     """How the layers of people's skin differ from those of a rig file, each with its source."""
     return shipped_records("skin-spread.toml")
 

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from thermicon.circuit.records import Table
+from thermicon.circuit.records import RecordTable
 from thermicon.icons.drawn import Tabled
 from thermicon.icons.model.arguments import checked
 
@@ -185,7 +185,9 @@ def validate(
     return assemble(evidence, load_thresholds(), people, draws, seed, trials)
 
 
-def assemble(evidence: Evidence, table: Table, people: int, draws: int, seed: int, trials: int) -> ValidationReport:
+def assemble(
+    evidence: Evidence, table: RecordTable, people: int, draws: int, seed: int, trials: int
+) -> ValidationReport:
     """Judge evidence that is there already by a table of published numbers."""
     from thermicon.circuit.program import own_version
 
@@ -199,7 +201,7 @@ def assemble(evidence: Evidence, table: Table, people: int, draws: int, seed: in
     return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), evidence)
 
 
-def judged(row: Row, was: Published, table: Table, evidence: Evidence, variable: Variable) -> Judged:
+def judged(row: Row, was: Published, table: RecordTable, evidence: Evidence, variable: Variable) -> Judged:
     """A row as one variant predicts it; a ValueError where nothing predicts it."""
 
     def found(channel: str) -> Predicted:
