@@ -18,7 +18,7 @@ from thermicon.icons.model.statements import Hold, Ramp, Return
 from thermicon.icons.near_words import did_you_mean
 from thermicon.icons.number_text import count_of
 
-from .judging import Judged, Progress, judge_drives, judge_sessions
+from .judging import JudgedStudy, Progress, judge_drives, judge_sessions
 from .schedule import Course, Trial, check_counts, check_session_time, courses_of, seed_of
 from .study_file import (
     MOST_ASKED,
@@ -68,7 +68,7 @@ class Plan:
     """Everything that a study's folder is written from."""
 
     materials: Materials
-    judged: Judged
+    judged: JudgedStudy
     landing: Landing
     courses: tuple[Course, ...]
 
@@ -161,7 +161,7 @@ def make_plan(materials: Materials, bar: ProgressBar, say: Callable[[str], None]
     check_session_time(plays, mean_s, gap.gap_s)
     with bar("sessions") as progress:
         judged = judge_sessions(_judged_courses(materials, courses), icons, rig, held, gap.gap_s, progress)
-    return Plan(materials, Judged(ready, gap, *judged), landing, courses)
+    return Plan(materials, JudgedStudy(ready, gap, *judged), landing, courses)
 
 
 def plays_of(study: Study, icons: int) -> int:

@@ -39,7 +39,7 @@ class Refused(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class JudgedStudy:
     """Drives that may be written, the gap between them, and the sessions judged in the worst case, by participant.
 
     `drift_K` is the largest of the baseline; `after_breaks` the blocks, each from rest; both may be empty.

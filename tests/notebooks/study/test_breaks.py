@@ -10,7 +10,7 @@ from thermicon.circuit import Drive, Export, Rig, SessionPlan, simulate_current
 from thermicon.circuit.arrays import Array
 from thermicon.circuit.safety.sessionplay import SessionDrive, drive_of, worst_case_of
 from thermicon.icons import load_library
-from thermicon.notebooks.study.judging import Judged, Refused, _extreme, _farthest, judge_sessions
+from thermicon.notebooks.study.judging import JudgedStudy, Refused, _extreme, _farthest, judge_sessions
 from thermicon.notebooks.study.schedule import Course, Trial
 from thermicon.notebooks.study.timing import Gap
 
@@ -77,9 +77,9 @@ def test_blocks_from_rest_are_one_run_for_one_block_and_add_up_for_more() -> Non
     assert highest[0] > highest[1] + 0.2
 
 
-def judged(course: Course, rig: Rig) -> Judged:
+def judged(course: Course, rig: Rig) -> JudgedStudy:
     judgement = judge_sessions([course], list(load_library("six-icons")), rig, False, GAP_S)
-    return Judged(cast("Export", None), cast("Gap", None), *judgement)
+    return JudgedStudy(cast("Export", None), cast("Gap", None), *judgement)
 
 
 @pytest.fixture(scope="module")
