@@ -30,7 +30,7 @@ KEYS: Mapping[str, Callable[[float], str]] = {"pause_s": "timing.gap_s = {:g}".f
 Progress = Callable[[int, int], None]
 
 
-class Refused(Exception):
+class StudyRefused(Exception):
     """A study that is not safe, or whose drives are refused; `reasons` say why, one a line."""
 
     def __init__(self, reasons: Sequence[str]) -> None:
@@ -86,7 +86,7 @@ def judge_drives(
         if longer != gap:
             ready, gap = prepared(longer.gap_s), longer
     if ready.refused:
-        raise Refused([f"{name}: {advised(one.text, one.changes, KEYS)}" for name, one in ready.refused])
+        raise StudyRefused([f"{name}: {advised(one.text, one.changes, KEYS)}" for name, one in ready.refused])
     return ready, gap
 
 
@@ -147,7 +147,7 @@ def judge_sessions(
         if worst.colour == "red" and sessions[label].verdict != "red"
     ]
     if red:
-        raise Refused(red)
+        raise StudyRefused(red)
     return sessions, {label: values[3] for label, values in extremes.items()}, after_breaks
 
 

@@ -10,7 +10,7 @@ from thermicon.circuit import Drive, Export, Rig, SessionPlan, simulate_current
 from thermicon.circuit.arrays import Array
 from thermicon.circuit.safety.sessionplay import SessionDrive, drive_of, worst_case_of
 from thermicon.icons import load_library
-from thermicon.notebooks.study.judging import JudgedStudy, Refused, _extreme, _farthest, judge_sessions
+from thermicon.notebooks.study.judging import JudgedStudy, StudyRefused, _extreme, _farthest, judge_sessions
 from thermicon.notebooks.study.schedule import Course, Trial
 from thermicon.notebooks.study.timing import Gap
 
@@ -104,9 +104,9 @@ def test_what_only_a_block_from_rest_exceeds_is_a_caution(between_C: float) -> N
 
 def test_a_block_from_rest_that_is_not_safe_refuses_the_study(between_C: float) -> None:
     rig = sure_rig().with_(**{"safety.skin_lowest_C": between_C, "safety.skin_lowest_soft_C": between_C})
-    with pytest.raises(Refused, match="blocks of participant A, each from rest: NOT SAFE: skin surface reaches"):
+    with pytest.raises(StudyRefused, match="blocks of participant A, each from rest: NOT SAFE: skin surface reaches"):
         judged(course("A", WARM, COLD), rig)
-    with pytest.raises(Refused, match=r"^session of participant A: NOT SAFE: skin surface reaches [^\n]*$"):
+    with pytest.raises(StudyRefused, match=r"^session of participant A: NOT SAFE: skin surface reaches [^\n]*$"):
         judged(course("A", COLD, WARM), rig)
 
 
