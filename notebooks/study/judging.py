@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from thermicon.icons.model.arguments import advised
 
 from ..files.exporting import felt_in
-from .schedule import Course
+from .schedule import ParticipantTrials
 from .study_file import StudyError
 from .timing import Gap
 
@@ -108,7 +108,12 @@ def _longer_gap(ready: Export, gap: Gap, wait_for_skin: bool) -> Gap:
 
 
 def judge_sessions(
-    courses: Sequence[Course], icons: Sequence[Icon], rig: Rig, held: bool, gap_s: float, step: Progress | None = None
+    courses: Sequence[ParticipantTrials],
+    icons: Sequence[Icon],
+    rig: Rig,
+    held: bool,
+    gap_s: float,
+    step: Progress | None = None,
 ) -> tuple[dict[str, Session], dict[str, float], dict[str, WorstCase]]:
     """Judge whole sessions in the worst case; return them, every participant's drift of the baseline, and the blocks.
 
