@@ -33,7 +33,7 @@ SURE = 0.8
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class JudgedRow:
     """A row as one variant predicts it, the verdict, and the share of draws in which it holds (None: not judged)."""
 
     predicted: Predicted
@@ -52,7 +52,7 @@ class Line:
 
     row: Row
     published: Published
-    judged: tuple[Judged, ...]
+    judged: tuple[JudgedRow, ...]
 
     @property
     def baseline(self) -> float | None:
@@ -201,7 +201,7 @@ def assemble(
     return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), evidence)
 
 
-def judged(row: Row, was: Published, table: RecordTable, evidence: Evidence, variable: Variable) -> Judged:
+def judged(row: Row, was: Published, table: RecordTable, evidence: Evidence, variable: Variable) -> JudgedRow:
     """A row as one variant predicts it; a ValueError where nothing predicts it."""
 
     def found(channel: str) -> Predicted:
@@ -216,7 +216,7 @@ def judged(row: Row, was: Published, table: RecordTable, evidence: Evidence, var
             made = _linear(made, factor, 1.0 if row.apply == "one plus" else 0.0)
     made = replace(made, unit=row.unit)
     held = [judge_row(row, each, was).holds is True for each in made.draws] if row.judged else []
-    return Judged(made, judge_row(row, made.value, was), sum(held) / len(held) if held else None)
+    return JudgedRow(made, judge_row(row, made.value, was), sum(held) / len(held) if held else None)
 
 
 def _both(row: Row, cold: Predicted, warm: Predicted) -> Predicted:
