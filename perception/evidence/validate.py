@@ -47,7 +47,7 @@ class JudgedRow:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class ReportRow:
     """A row of the report: what was published, and the judgement of every variant in the order of VARIABLES."""
 
     row: Row
@@ -70,7 +70,7 @@ class Section:
     """One target with its lines."""
 
     target: Target
-    lines: tuple[Line, ...]
+    lines: tuple[ReportRow, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,7 +196,9 @@ def assemble(
         lines = []
         for row in target.rows:
             was = published_for(row, table)
-            lines.append(Line(row, was, tuple(judged(row, was, table, evidence, variant) for variant in VARIABLES)))
+            lines.append(
+                ReportRow(row, was, tuple(judged(row, was, table, evidence, variant) for variant in VARIABLES))
+            )
         sections.append(Section(target, tuple(lines)))
     return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), evidence)
 

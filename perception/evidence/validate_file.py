@@ -8,7 +8,7 @@ from ..observer.channels import VARIABLES
 from .predicted import Predicted
 from .results import PredictedRow, judging_predictions, load_predictions, median_half_width
 from .rows import load_evidence
-from .validate import JudgedRow, Line, ValidationReport
+from .validate import JudgedRow, ReportRow, ValidationReport
 from .verdicts import criterion_of_row
 
 
@@ -36,7 +36,7 @@ def report_file(report: ValidationReport) -> dict[str, Any]:
     }
 
 
-def _line(line: Line) -> dict[str, Any]:
+def _line(line: ReportRow) -> dict[str, Any]:
     return {
         "row": line.row.label,
         "unit": line.row.unit,
