@@ -18,7 +18,7 @@ from ..observer.channels import VARIABLES, Variable
 from ..observer.observer import load_thresholds
 from .baseline import nearer_of
 from .predicted import Predicted, interval_of
-from .targets import PAIRED, Published, Row, Target, combined, load_targets, published_for
+from .targets import PAIRED, Published, Target, TargetRow, combined, load_targets, published_for
 from .verdicts import Verdict, judge_row
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class JudgedRow:
 class ReportRow:
     """A row of the report: what was published, and the judgement of every variant in the order of VARIABLES."""
 
-    row: Row
+    row: TargetRow
     published: Published
     judged: tuple[JudgedRow, ...]
 
@@ -203,7 +203,7 @@ def assemble(
     return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), evidence)
 
 
-def judged(row: Row, was: Published, table: RecordTable, evidence: Evidence, variable: Variable) -> JudgedRow:
+def judged(row: TargetRow, was: Published, table: RecordTable, evidence: Evidence, variable: Variable) -> JudgedRow:
     """A row as one variant predicts it; a ValueError where nothing predicts it."""
 
     def found(channel: str) -> Predicted:
@@ -221,7 +221,7 @@ def judged(row: Row, was: Published, table: RecordTable, evidence: Evidence, var
     return JudgedRow(made, judge_row(row, made.value, was), sum(held) / len(held) if held else None)
 
 
-def _both(row: Row, cold: Predicted, warm: Predicted) -> Predicted:
+def _both(row: TargetRow, cold: Predicted, warm: Predicted) -> Predicted:
     """One prediction of two channels; None or inf where one of them was not felt."""
     value = None if cold.value is None or warm.value is None else combined(row.apply, cold.value, warm.value)
     each = tuple(
