@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from ..kernels.parallel import Progress
-    from .shown import Evidence
+    from .shown import ShownEvidence
 
 PEOPLE, TRIALS = 200, 48
 SURE = 0.8
@@ -99,7 +99,7 @@ class ValidationReport(Tabled):
     seed: int
     trials: int
     sections: tuple[Section, ...]
-    evidence: Evidence
+    evidence: ShownEvidence
 
     def counts(self, variant: int) -> tuple[int, int]:
         """How many judged rows hold for a variant, of how many."""
@@ -186,7 +186,7 @@ def validate(
 
 
 def assemble(
-    evidence: Evidence, table: RecordTable, people: int, draws: int, seed: int, trials: int
+    evidence: ShownEvidence, table: RecordTable, people: int, draws: int, seed: int, trials: int
 ) -> ValidationReport:
     """Judge evidence that is there already by a table of published numbers."""
     from thermicon.circuit.program import own_version
@@ -203,7 +203,9 @@ def assemble(
     return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), evidence)
 
 
-def judged(row: TargetRow, was: Published, table: RecordTable, evidence: Evidence, variable: Variable) -> JudgedRow:
+def judged(
+    row: TargetRow, was: Published, table: RecordTable, evidence: ShownEvidence, variable: Variable
+) -> JudgedRow:
     """A row as one variant predicts it; a ValueError where nothing predicts it."""
 
     def found(channel: str) -> Predicted:
