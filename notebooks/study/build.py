@@ -19,7 +19,7 @@ from thermicon.icons.near_words import did_you_mean
 from thermicon.icons.number_text import count_of
 
 from .judging import JudgedStudy, Progress, judge_drives, judge_sessions
-from .schedule import ParticipantTrials, Trial, check_counts, check_session_time, courses_of, seed_of
+from .schedule import Schedule, Trial, check_counts, check_session_time, courses_of, seed_of
 from .study_file import (
     MOST_ASKED,
     Stimuli,
@@ -70,7 +70,7 @@ class Plan:
     materials: Materials
     judged: JudgedStudy
     landing: Landing
-    courses: tuple[ParticipantTrials, ...]
+    courses: tuple[Schedule, ...]
 
     @property
     def durations_s(self) -> dict[str, float]:
@@ -172,14 +172,14 @@ def plays_of(study: Study, icons: int) -> int:
     return icons * (study.trials.repetitions * study.trials.blocks + study.trials.practice)
 
 
-def _judged_courses(materials: Materials, courses: tuple[ParticipantTrials, ...]) -> tuple[ParticipantTrials, ...]:
+def _judged_courses(materials: Materials, courses: tuple[Schedule, ...]) -> tuple[Schedule, ...]:
     """Orders that are judged as sessions; for a threshold the worst: the greatest step in every trial."""
     threshold = materials.study.threshold
     if threshold is None:
         return courses
     strongest = materials.chosen[-1].name
     trials = tuple(Trial(1, number, strongest) for number in range(1, threshold.trials + 1))
-    return (ParticipantTrials("any", trials),)
+    return (Schedule("any", trials),)
 
 
 def _whole_session(rig: Rig, plays: int, mean_s: float, gap_s: float) -> Rig:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from thermicon.icons.model.arguments import advised
 
 from ..files.exporting import felt_in
-from .schedule import ParticipantTrials
+from .schedule import Schedule
 from .study_file import StudyError
 from .timing import Gap
 
@@ -108,17 +108,12 @@ def _longer_gap(ready: Export, gap: Gap, wait_for_skin: bool) -> Gap:
 
 
 def judge_sessions(
-    courses: Sequence[ParticipantTrials],
-    icons: Sequence[Icon],
-    rig: Rig,
-    held: bool,
-    gap_s: float,
-    step: Progress | None = None,
+    courses: Sequence[Schedule], icons: Sequence[Icon], rig: Rig, held: bool, gap_s: float, step: Progress | None = None
 ) -> tuple[dict[str, Session], dict[str, float], dict[str, WorstCase]]:
     """Judge whole sessions in the worst case; return them, every participant's drift of the baseline, and the blocks.
 
     Every order is run on the rig as given; in all corners those of up to four participants, or the most extreme ones.
-    Where there are breaks, each is run without them, and with every block from rest. Raises Refused where one is red.
+    Where there are breaks, each is run without them, and with every block from rest. Raises StudyRefused if one is red.
     """
     from thermicon.circuit import SessionPlan, play_session
     from thermicon.circuit.safety.sessionplay import drive_of, worst_case_of

@@ -36,9 +36,7 @@ class ShownEvidence:
         raise ValueError(f"no experiment {experiment!r} predicts {quantity!r} ({channel})")
 
 
-def collect_evidence(
-    people: int, draws: int, seed: int, trials: int, progress: Progress | None = None
-) -> ShownEvidence:
+def collect_evidence(people: int, draws: int, seed: int, trials: int, progress: Progress | None) -> ShownEvidence:
     """Run everything; `progress` is called with (steps done, steps in all)."""
     from thermicon.icons import IconSet, load_library
 

@@ -196,20 +196,16 @@ def assemble(
         lines = []
         for row in target.rows:
             was = published_for(row, table)
-            lines.append(
-                ReportRow(row, was, tuple(judged(row, was, table, evidence, variant) for variant in VARIABLES))
-            )
+            lines.append(ReportRow(row, was, tuple(judged(row, was, table, evidence, each) for each in VARIABLES)))
         sections.append(Section(target, tuple(lines)))
     return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), evidence)
 
 
-def judged(
-    row: TargetRow, was: Published, table: RecordTable, evidence: ShownEvidence, variable: Variable
-) -> JudgedRow:
+def judged(row: TargetRow, was: Published, table: RecordTable, shown: ShownEvidence, by: Variable) -> JudgedRow:
     """A row as one variant predicts it; a ValueError where nothing predicts it."""
 
     def found(channel: str) -> Predicted:
-        return evidence.find(variable, row.experiment, row.quantity, channel, row.predicted_where)
+        return shown.find(by, row.experiment, row.quantity, channel, row.predicted_where)
 
     if row.apply in PAIRED:
         made = _both(row, found("cold"), found("warm"))

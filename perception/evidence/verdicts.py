@@ -28,8 +28,8 @@ class Verdict:
 def judge_row(row: TargetRow, predicted: float | None, published: Published) -> Verdict:
     """The verdict on a predicted number, None where nothing was felt or there is no number.
 
-    >>> from thermicon.perception.evidence.targets import Published, Row
-    >>> row = Row("limits", "warm", "K", "limits", "threshold", "factor", "ours", value=1.5, published="limits")
+    >>> from thermicon.perception.evidence.targets import Published, TargetRow
+    >>> row = TargetRow("limits", "warm", "K", "limits", "threshold", "factor", "ours", value=1.5, published="limits")
     >>> judge_row(row, 3.0, Published("1.5 K", "somebody", value=1.5)).text
     '×2.00, at most ×1.5 either way'
     """
@@ -84,7 +84,7 @@ def criterion_of_row(row: TargetRow, published: Published) -> str:
 def value_text(row: TargetRow, value: float, published: Published) -> str:
     """The value with as many digits as it takes to see on which side of the bounds of the rule it lies.
 
-    >>> value_text(Row("ratio", "", "1", "x", "y", "at least", "ours", value=2.0), 1.9953, Published("", ""))
+    >>> value_text(TargetRow("ratio", "", "1", "x", "y", "at least", "ours", value=2.0), 1.9953, Published("", ""))
     '1.995'
     """
     if row.rule in ("shown", "factor", "share") or not math.isfinite(value):

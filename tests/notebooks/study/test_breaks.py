@@ -11,18 +11,18 @@ from thermicon.circuit.arrays import Array
 from thermicon.circuit.safety.sessionplay import SessionDrive, drive_of, worst_case_of
 from thermicon.icons import load_library
 from thermicon.notebooks.study.judging import JudgedStudy, StudyRefused, _extreme, _farthest, judge_sessions
-from thermicon.notebooks.study.schedule import ParticipantTrials, Trial
+from thermicon.notebooks.study.schedule import Schedule, Trial
 from thermicon.notebooks.study.timing import Gap
 
 GAP_S = 10.0
 COLD, WARM = ("cooling-step", "linear-cooling") * 2, ("warming-step", "linear-warming") * 2
 
 
-def course(label: str, *blocks: tuple[str, ...]) -> ParticipantTrials:
+def course(label: str, *blocks: tuple[str, ...]) -> Schedule:
     rows: list[Trial] = []
     for number, block in enumerate(blocks, 1):
         rows += [Trial(number, len(rows) + k, icon) for k, icon in enumerate(block, 1)]
-    return ParticipantTrials(label, tuple(rows))
+    return Schedule(label, tuple(rows))
 
 
 def drive(order: tuple[str, ...], rig: Rig) -> SessionDrive:
@@ -77,7 +77,7 @@ def test_blocks_from_rest_are_one_run_for_one_block_and_add_up_for_more() -> Non
     assert highest[0] > highest[1] + 0.2
 
 
-def judged(course: ParticipantTrials, rig: Rig) -> JudgedStudy:
+def judged(course: Schedule, rig: Rig) -> JudgedStudy:
     judgement = judge_sessions([course], list(load_library("six-icons")), rig, False, GAP_S)
     return JudgedStudy(cast("Export", None), cast("Gap", None), *judgement)
 
