@@ -7,14 +7,8 @@ import pytest
 
 from tests.builders import messages
 from thermicon.circuit.records import RecordError
-from thermicon.perception.evidence.targets import (
-    Published,
-    TargetRow,
-    combined,
-    load_targets,
-    published_for,
-    read_targets,
-)
+from thermicon.perception.evidence import targets
+from thermicon.perception.evidence.targets import Published, TargetRow, combined, load_targets, published_for
 from thermicon.perception.evidence.verdicts import criterion_of_row, judge_row, value_text
 from thermicon.perception.observer.observer import load_thresholds
 
@@ -101,9 +95,9 @@ ROW = '[[target.rows]]\nname = "n"\nexperiment = "x"\nquantity = "q"\nchannel = 
 
 @pytest.mark.parametrize(("added", "message"), messages(__file__)["targets"].items())
 def test_a_wrong_target_is_named(added: str, message: str) -> None:
-    assert read_targets(TARGET + ROW + 'rule = "shown"')[0].rows[0].name == "n"
+    assert targets.read_targets(TARGET + ROW + 'rule = "shown"')[0].rows[0].name == "n"
     with pytest.raises(RecordError, match=message):
-        read_targets(TARGET + added.replace("ROW ", ROW))
+        targets.read_targets(TARGET + added.replace("ROW ", ROW))
 
 
 def test_a_published_number_that_is_not_there_is_named() -> None:
