@@ -47,7 +47,7 @@ class Ramp:
 
 
 @dataclass(frozen=True, slots=True)
-class Played:
+class Stimulated:
     """A ramp played in a laboratory: receptor drive (rows,) of its channel. Gains are multiples of threshold a unit."""
 
     laboratory: Laboratory
@@ -55,7 +55,7 @@ class Played:
     drive: Array
 
     @classmethod
-    def of(cls, laboratory: Laboratory, ramp: Ramp) -> Played:
+    def of(cls, laboratory: Laboratory, ramp: Ramp) -> Stimulated:
         """Play it."""
         drive = laboratory.drive(ramp.site_rig, ramp.channel, ramp.baseline_C, ramp.corners, ramp.end_s)
         return cls(laboratory, ramp, drive)
@@ -97,7 +97,7 @@ def yes_no_logs(laboratory: Laboratory, ramps: Sequence[Ramp], gain: float) -> t
     """Logs (people,) of the size that is reported in half of the trials, and of the SD of the function, guesses out."""
     from ..kernels.crossing import psychometric
 
-    reported = np.stack([Played.of(laboratory, ramp).reported(gain) for ramp in ramps], axis=1)
+    reported = np.stack([Stimulated.of(laboratory, ramp).reported(gain) for ramp in ramps], axis=1)
     logs = np.empty((reported.shape[0], len(HALVES)))
     psychometric(reported, np.log([ramp.size_K for ramp in ramps]), np.array(HALVES), logs)
     sizes = np.exp(logs)
