@@ -205,7 +205,7 @@ class Answered:
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredValues:
     """Thresholds, reaction times and ratings, which every laboratory measures as well, with one and the same crowd."""
 
     measurements: Measurements

@@ -13,7 +13,7 @@ from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.experiments.measure import Condition, Setting, logs_of
 from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.draws import PosteriorDraws
-from thermicon.perception.pilot.conditioning import Measured, condition
+from thermicon.perception.pilot.conditioning import MeasuredValues, condition
 from thermicon.perception.pilot.likelihood import effective, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import (
     Emulated,
@@ -98,7 +98,7 @@ def test_people_of_a_laboratory_scatter_as_predicted(prior: LaboratoryPrior) -> 
 @pytest.mark.slow
 def test_too_few_draws_are_refreshed_and_agree_with_many_weighed_draws(prior: LaboratoryPrior) -> None:
     some = synthetic_measurements(RIG, participants=12, trials=60, seed=1, conditions=SHARP)
-    found = condition(Measured(some, prior, Setting.of(RIG)), prior.first(200, 2), kept=150)
+    found = condition(MeasuredValues(some, prior, Setting.of(RIG)), prior.first(200, 2), kept=150)
     assert 1 <= found.rounds <= 3 and found.effective < 50.0 and found.effective_after >= 37.5
     assert len(found.after) == len(found.simulated_after.mean) == 150
     many = predicted(prior, prior.first(1000, 5), Setting.of(RIG), SHARP)
