@@ -10,7 +10,7 @@ from thermicon.icons.number_text import number, percent, percent_span
 from .blocks import Block, Grid, Text, grid
 
 if TYPE_CHECKING:
-    from thermicon.perception.pilot.plan import Design, Plan
+    from thermicon.perception.pilot.plan import ExperimentSize, Plan
 
 
 def plan_report(found: Plan, names: Sequence[str]) -> list[Block]:
@@ -42,7 +42,7 @@ def designs_table(found: Plan) -> Grid:
     return grid(("participants", *headings), rows, headings)
 
 
-def _cell(found: Plan, design: Design) -> str:
+def _cell(found: Plan, design: ExperimentSize) -> str:
     text = f"{100 * design.width:.1f}" if design.found is None else percent(design.found)
     return f"{text} *" if found.enough(design) else f"{text}  "
 

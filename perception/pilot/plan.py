@@ -40,7 +40,7 @@ FEWEST = 2
 
 
 @dataclass(frozen=True, slots=True)
-class Design:
+class ExperimentSize:
     """An experiment of so many participants and trials (each, of each set), and what it is expected to give.
 
     `width` is that of the 95 % interval of the proportion correct, or of the difference of two sets, which a share
@@ -77,7 +77,7 @@ class Plan(Tabled):
 
     predictions: tuple[SetPrediction, ...]
     difference: Three | None
-    designs: tuple[Design, ...]
+    designs: tuple[ExperimentSize, ...]
     wanted: float
     rig: str
     rig_changes: tuple[str, ...]
@@ -86,12 +86,12 @@ class Plan(Tabled):
     draws: int
     version: str
 
-    def enough(self, design: Design) -> bool:
+    def enough(self, design: ExperimentSize) -> bool:
         """Whether a design gives what was asked for."""
         return design.width <= self.wanted if design.found is None else design.found >= self.wanted
 
     @property
-    def cheapest(self) -> Design | None:
+    def cheapest(self) -> ExperimentSize | None:
         """The design of the fewest trials that gives what was asked for, of equal ones that of fewer participants."""
         good = [each for each in self.designs if self.enough(each)]
         return min(good, key=lambda each: (each.participants * each.trials, each.participants)) if good else None
@@ -226,7 +226,9 @@ def _check(participants: Sequence[int], trials: Sequence[int], wanted: float | N
         raise ValueError(f"at least {LEAST_DRAWS} draws are needed, not {draws}")
 
 
-def _simulated(played: Sequence[Confusions], people: int, trials: int, stream: np.random.SeedSequence) -> Design:
+def _simulated(
+    played: Sequence[Confusions], people: int, trials: int, stream: np.random.SeedSequence
+) -> ExperimentSize:
     """One size of experiment, simulated in one laboratory after the other."""
     from scipy.stats import t
 
@@ -240,11 +242,11 @@ def _simulated(played: Sequence[Confusions], people: int, trials: int, stream: n
     if len(shares) == 1:
         middle = each.mean(axis=1)
         width = np.minimum(middle + half, 1.0) - np.maximum(middle - half, 0.0)
-        return Design(people, trials, float(width.mean()))
+        return ExperimentSize(people, trials, float(width.mean()))
     truth = (played[0].correct - played[1].correct)[where]
     shown = np.abs(each.mean(axis=1)) > half
     right = np.sign(each.mean(axis=1)) == np.sign(truth)
-    return Design(
+    return ExperimentSize(
         people, trials, float(2.0 * half.mean()), float((shown & right).mean()), float((shown & ~right).mean())
     )
 
