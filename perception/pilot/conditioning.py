@@ -35,7 +35,7 @@ NEAR_ANSWERS, NEAR_VALUES = 2.0, 25.0
 """Ln L by which a laboratory is less likely than those near the data if it counts half in a fit: those far from the
 data keep the polynomial from bending there, and count for little else."""
 Step = Callable[[], None]
-Data: TypeAlias = "Answered | Measured"
+Data: TypeAlias = "Answered | MeasuredValues"
 
 
 @dataclass(frozen=True, slots=True)

@@ -60,7 +60,7 @@ class ExperimentSize:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan(Tabled):
+class ExperimentPlan(Tabled):
     """Designs that were simulated, and the one to take.
 
     Attributes
@@ -124,7 +124,7 @@ class Plan(Tabled):
         return json.dumps(self.to_dict(), ensure_ascii=False, indent=1)
 
     def __repr__(self) -> str:
-        return f"Plan({len(self.designs)} designs, the cheapest {self.cheapest})"
+        return f"ExperimentPlan({len(self.designs)} designs, the cheapest {self.cheapest})"
 
 
 @checked
@@ -140,7 +140,7 @@ def plan(
     draws: int = DRAWS,
     progress: Progress | None = None,
     **words: Unpack[CrowdWords],
-) -> Plan:
+) -> ExperimentPlan:
     """Simulate experiments of several sizes.
 
     Parameters
@@ -164,7 +164,7 @@ def plan(
 
     Returns
     -------
-    Plan
+    ExperimentPlan
         The same numbers for the same arguments.
 
     Raises
@@ -199,7 +199,7 @@ def plan(
         for j, times in enumerate(trials):
             designs.append(_simulated(played, people, times, np.random.SeedSequence([seed, 24, k, j])))
             step()
-    return Plan(
+    return ExperimentPlan(
         predictions=tuple(SetPrediction.of(each.title, one) for each, one in zip(sets, played, strict=True)),
         difference=None if apart is None else three(apart),
         designs=tuple(designs),
