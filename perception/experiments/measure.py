@@ -24,7 +24,7 @@ from ..observer.mechanisms.age import YOUNG_YEARS
 from ..observer.mechanisms.site import on_forearm
 from ..observer.observer import Observer
 from .laboratory import PEOPLE, SEED, Laboratory
-from .tasks import UNSTATED, Stimulated, StimulusRamp, yes_no_logs
+from .tasks import UNSTATED, DisplayRamp, Stimulated, yes_no_logs
 
 Kind = Literal["threshold", "reaction_time", "rating", "wrong_quality"]
 METHODS: dict[Kind, tuple[str, ...]] = {
@@ -168,10 +168,8 @@ def logs_of(
     site, channel, limits = setting.path_site, condition.channel, condition.method == "limits"
     gain = laboratory.gain(channel, setting.area_cm2, OWN, site, YOUNG_YEARS)
 
-    def ramp(size_K: float, hold_s: float) -> StimulusRamp:
-        return StimulusRamp.held(
-            setting.site_rig, channel, condition.baseline_C, size_K, condition.rate_K_per_s, hold_s
-        )
+    def ramp(size_K: float, hold_s: float) -> DisplayRamp:
+        return DisplayRamp.held(setting.site_rig, channel, condition.baseline_C, size_K, condition.rate_K_per_s, hold_s)
 
     if condition.method == "yes_no":
         ramps = [ramp(size, condition.hold_s) for size in YES_NO_SIZES_K.tolist()]
@@ -205,7 +203,7 @@ def misnamed_of(laboratory: Laboratory, setting: Setting, condition: Condition) 
     assert condition.size_K is not None
     cold, warm = (laboratory.gain(each, setting.area_cm2, OWN, setting.path_site, YOUNG_YEARS) for each in CHANNELS)
     about = setting.site_rig, condition.channel, condition.baseline_C, condition.size_K, condition.rate_K_per_s
-    played = Stimulated.of(laboratory, StimulusRamp.held(*about, max(condition.hold_s, AFTER_S)))
+    played = Stimulated.of(laboratory, DisplayRamp.held(*about, max(condition.hold_s, AFTER_S)))
     shares = played.misnamed(Both(cold, warm).of(condition.channel), warm, setting.path_site)
     return shares, float(np.median(np.sqrt(shares * (1.0 - shares))))
 

@@ -23,7 +23,7 @@ HALVES = (0.16, 0.5, 0.84)
 
 
 @dataclass(frozen=True, slots=True)
-class StimulusRamp:
+class DisplayRamp:
     """A ramp of the display over the skin of a rig's site: size in K without sign, K/s, held until `end_s`."""
 
     site_rig: str
@@ -36,7 +36,7 @@ class StimulusRamp:
     @classmethod
     def held(
         cls, site_rig: str, channel: Channel, baseline_C: float, size_K: float, rate_K_per_s: float, hold_s: float
-    ) -> StimulusRamp:
+    ) -> DisplayRamp:
         """A ramp whose end is held for so many seconds."""
         return cls(site_rig, channel, baseline_C, size_K, rate_K_per_s, size_K / rate_K_per_s + hold_s)
 
@@ -51,11 +51,11 @@ class Stimulated:
     """A ramp played in a laboratory: receptor drive (rows,) of its channel. Gains are multiples of threshold a unit."""
 
     laboratory: Laboratory
-    ramp: StimulusRamp
+    ramp: DisplayRamp
     drive: Array
 
     @classmethod
-    def of(cls, laboratory: Laboratory, ramp: StimulusRamp) -> Stimulated:
+    def of(cls, laboratory: Laboratory, ramp: DisplayRamp) -> Stimulated:
         """Play it."""
         drive = laboratory.drive(ramp.site_rig, ramp.channel, ramp.baseline_C, ramp.corners, ramp.end_s)
         return cls(laboratory, ramp, drive)
@@ -93,7 +93,7 @@ class Stimulated:
         return found
 
 
-def yes_no_logs(laboratory: Laboratory, ramps: Sequence[StimulusRamp], gain: float) -> tuple[Array, Array]:
+def yes_no_logs(laboratory: Laboratory, ramps: Sequence[DisplayRamp], gain: float) -> tuple[Array, Array]:
     """Logs (people,) of the size that is reported in half of the trials, and of the SD of the function, guesses out."""
     from ..kernels.crossing import psychometric
 

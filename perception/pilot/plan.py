@@ -226,13 +226,11 @@ def _check(participants: Sequence[int], trials: Sequence[int], wanted: float | N
         raise ValueError(f"at least {LEAST_DRAWS} draws are needed, not {draws}")
 
 
-def _simulated(
-    played: Sequence[Confusions], people: int, trials: int, stream: np.random.SeedSequence
-) -> ExperimentSize:
+def _simulated(played: Sequence[Confusions], people: int, trials: int, seed: np.random.SeedSequence) -> ExperimentSize:
     """One size of experiment, simulated in one laboratory after the other."""
     from scipy.stats import t
 
-    rng = np.random.default_rng(stream)
+    rng = np.random.default_rng(seed)
     laboratories, crowd = played[0].probability.shape[:2]
     where = np.arange(EXPERIMENTS) % laboratories
     invited = rng.integers(crowd, size=(EXPERIMENTS, people))
