@@ -33,7 +33,7 @@ from .checks import Check, Judged, worst_of
 from .current import CurrentPlant, CurrentPlay
 from .ensemble import Ensemble
 from .plant import Single
-from .session import Play, Session, SessionError, SessionPlan, check_length
+from .session import Session, SessionError, SessionPlan, SessionPlay, check_length
 from .tally import WATCHED, Tally, cem43_min, henriques
 from .verdict import SafetyVerdict, checks_of
 
@@ -244,7 +244,9 @@ def play_session(
     )
 
 
-def _plays(plan: SessionPlan, played: SessionDrive, trace: Trace, limits: Limits, energy_J: Array) -> tuple[Play, ...]:
+def _plays(
+    plan: SessionPlan, played: SessionDrive, trace: Trace, limits: Limits, energy_J: Array
+) -> tuple[SessionPlay, ...]:
     first = np.rint(np.array(played.starts_s) * played.rate_Hz).astype(np.int64)
     plays, rest = [], float(trace.skin_C[0])
     for place, (begin, until) in enumerate(pairwise([*first.tolist(), len(trace.time_s) - 1])):
@@ -253,7 +255,7 @@ def _plays(plan: SessionPlan, played: SessionDrive, trace: Trace, limits: Limits
         columns = {name: getattr(trace, name)[np.newaxis, rows] for name in WATCHED}
         verdict = SafetyVerdict(checks_of(limits, times, columns))
         plays.append(
-            Play(
+            SessionPlay(
                 icon=plan.order[place],
                 start_s=played.starts_s[place],
                 end_s=played.ends_s[place],
