@@ -37,7 +37,7 @@ LATE_FIRST = "first give the late column a file of its own, and fit again"
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class FittedParameter:
     """One fitted parameter: what the rig had (`start`), what was fitted, and the ends of its 95 % interval.
 
     `log`: a scale, with a relative interval. `identified`: the interval is narrower than what is assumed anyway;
@@ -86,7 +86,7 @@ def is_identified(log: bool, sd: float, usual: float) -> bool:
 
 def identified(
     problem: Problem, solution: Solution, start: Rig, *, late: bool = False
-) -> tuple[tuple[Parameter, ...], Array]:
+) -> tuple[tuple[FittedParameter, ...], Array]:
     """The free keys with intervals, against the rig as given, and correlations; a `late` column is mended first."""
     count, theta = len(problem.keys), solution.theta
     deviation = np.sqrt(np.diag(solution.covariance)[:count])
@@ -110,7 +110,7 @@ def identified(
             low = max(low, 0.0)
         assert before is not None
         parameters.append(
-            Parameter(
+            FittedParameter(
                 key.key, key.words, unit_of(key.key), before, value, low, high, key.log, k not in wanting,
                 advice.get(k, ""),
             )

@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import Array
 from ..rig.uncertainty import Uncertainty
 from .between import MAD_TO_SD
-from .identify import Parameter
+from .identify import FittedParameter
 from .keys import free_keys, possible_keys
 from .problem import Problem, Unknown
 from .rig_fit import LARGEST, channel_fits
@@ -29,7 +29,7 @@ OFFSET_SDS = 3.0
 
 
 def disagreement(
-    problem: Problem, solution: Solution, missed: Sequence[str], late: str, unknown: Sequence[Parameter]
+    problem: Problem, solution: Solution, missed: Sequence[str], late: str, unknown: Sequence[FittedParameter]
 ) -> tuple[tuple[str, ...], str]:
     """What rig and logs do not agree in, and why in a few words; `missed` and `late` are sentences on channels."""
     if late:
@@ -48,7 +48,7 @@ def disagreement(
     return (*missed, f"intervals may be too narrow, since what is held fixed is taken as right: {cure}"), NO_MATCH
 
 
-def _combined(problem: Problem, theta: Array, unknown: Sequence[Parameter]) -> tuple[str, ...]:
+def _combined(problem: Problem, theta: Array, unknown: Sequence[FittedParameter]) -> tuple[str, ...]:
     """A sentence where keys that are not identified matter together, so that the rig that keeps them misses the log."""
     names = {item.key for item in unknown}
     places = [k for k, key in enumerate(problem.keys) if key.key in names]
@@ -120,7 +120,7 @@ def unsteady(problem: Problem, theta: Array) -> list[str]:
     ]
 
 
-def kept(parameters: Sequence[Parameter]) -> tuple[str, ...]:
+def kept(parameters: Sequence[FittedParameter]) -> tuple[str, ...]:
     """What the fitted rig keeps of the rig before, since the logs do not say it."""
     values = ", ".join(f"{item.key} = {item.start:.4g} {item.unit}".rstrip() for item in parameters)
     return (f"not identified, so that the fitted rig keeps what the rig before had: {values}",) if values else ()

@@ -12,7 +12,7 @@ from thermicon.circuit import Device, Drive, Gate, Rig, export, fit, simulate, s
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.device import device_names
 from thermicon.circuit.delivery.formats import format_names, load_format
-from thermicon.circuit.fitting.identify import Parameter, cures, identified
+from thermicon.circuit.fitting.identify import FittedParameter, cures, identified
 from thermicon.circuit.fitting.keys import COMMON, CONTACT, free_keys
 from thermicon.circuit.fitting.laboratory import calibration_icon, plan, synthetic_log
 from thermicon.circuit.fitting.log import Log, read_log
@@ -129,7 +129,7 @@ def test_rounding_is_noise_and_a_truth_out_of_reach_is_not_known(log: Log, thena
         )
         (item,), _ = identified(contact, less, true_rig)
         assert (item.identified, item.interval != "unknown") == (known, known), sd
-    wide = Parameter("a", "a", "", 1.0, 1.0, 0.5, 2.0, True, True)
+    wide = FittedParameter("a", "a", "", 1.0, 1.0, 0.5, 2.0, True, True)
     assert (wide.half_width, replace(wide, low=0.9, high=1.05).half_width) == pytest.approx((1.0, 0.1))
 
 
