@@ -21,7 +21,7 @@ from ..rig.uncertainty import Uncertainty
 from .identify import FittedParameter
 from .keys import FitKey
 from .overlay import Beside
-from .problem import Problem
+from .problem import FitProblem
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -127,7 +127,7 @@ class RigFit(Tabled):
             raise FitError(str(problem)) from None
 
 
-def channel_fits(problem: Problem, theta: Array) -> tuple[ChannelFit, ...]:
+def channel_fits(problem: FitProblem, theta: Array) -> tuple[ChannelFit, ...]:
     """Return every channel beside the simulation at a point, on the clock of its run's drive."""
     found = problem.simulated(theta)
     fits = []
