@@ -75,7 +75,7 @@ def width_text(log: bool, width: float, unit: str) -> str:
 
 
 def half_width(log: bool, sd: float) -> float:
-    """Half of a 95 % interval from the standard deviation of a fitted number, as `Parameter.half_width`."""
+    """Half of a 95 % interval from the standard deviation of a fitted number, as `FittedParameter.half_width`."""
     return math.expm1(min(T95 * sd, 50.0)) if log else T95 * sd
 
 

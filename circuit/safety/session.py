@@ -259,12 +259,10 @@ class Session(Tabled, Judged):
         return max(hard, key=lambda check: check.beyond, default=None)
 
     def to_frame(self) -> pd.DataFrame:
-        """Return one row per play, with the fields of a Play as columns."""
+        """Return one row per play, with the fields of a SessionPlay as columns."""
         import pandas as pd
 
-        return pd.DataFrame(
-            [asdict(play) for play in self.plays], columns=[field.name for field in fields(SessionPlay)]
-        )
+        return pd.DataFrame([asdict(play) for play in self.plays], columns=[each.name for each in fields(SessionPlay)])
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the temperatures with a grey band for every play; returns the Axes."""

@@ -70,7 +70,7 @@ def curves_of(trace: Trace, name: str) -> Curves:
 def read_curves(path: str, icon: str | None = None, theirs: Mapping[str, str] | None = None) -> Curves:
     """Return the curves in the file of a trace or log; of a file with several icons, those of `icon`.
 
-    `theirs` says what the file calls our columns. Raises LogError that says what is wrong and where.
+    `theirs` says what the file calls our columns. Raises TraceFileError that says what is wrong and where.
     """
     from thermicon.circuit.inputs import read_bytes, table_fault
     from thermicon.circuit.solver.trace import COLUMNS
@@ -108,7 +108,7 @@ def _rows_of(icons: list[str], path: str, icon: str | None) -> list[int]:
 def align(a: Curves, b: Curves) -> Aligned:
     """Lay two sets of curves on common times: those of a log where the other is a whole trace, else those of B.
 
-    Raises LogError where they share no time or no column.
+    Raises TraceFileError where they share no time or no column.
     """
     lead, other = (a, b) if b.whole and not a.whole else (b, a)
     low, high = max(a.time_s[0], b.time_s[0]), min(a.time_s[-1], b.time_s[-1])
