@@ -18,19 +18,19 @@ from .channels import CHANNELS, NORMS, VARIABLES, Channel, Norm, Variable, check
 from .constants import fields_from, objection_to, values_in, values_of
 from .mechanisms.adaptation import Adaptation
 from .mechanisms.age import Age
+from .mechanisms.bounds import Bounds
 from .mechanisms.conduction import Conduction
 from .mechanisms.criterion import Criterion
 from .mechanisms.decision import Decision
 from .mechanisms.gain import Gain
 from .mechanisms.labels import Labels
-from .mechanisms.limits import Limits
 from .mechanisms.mechanism import Mechanism
 from .mechanisms.memory import Memory
 from .mechanisms.ratings import Ratings
 from .mechanisms.site import Site
-from .mechanisms.skin import Skin
 from .mechanisms.spreads import Spreads
 from .mechanisms.summation import Summation
+from .mechanisms.tissue import Tissue
 from .mechanisms.transducer import Transducer
 
 __all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "load_thresholds"]
@@ -44,7 +44,7 @@ CURE = (
 
 @dataclass(frozen=True, kw_only=True)
 class Observer(
-    Skin, Adaptation, Limits, Site, Summation, Age, Memory, Ratings, Transducer, Gain,
+    Tissue, Adaptation, Bounds, Site, Summation, Age, Memory, Ratings, Transducer, Gain,
     Criterion, Conduction, Decision, Labels, Spreads, Mechanism,
 ):  # fmt: skip
     """A nominal person: SI units inside, sensation in units of the sensory noise (d′).
