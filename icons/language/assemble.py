@@ -307,14 +307,8 @@ class _Assembler:
             if isinstance(part, Repeat):
                 self.returns(part.body)
             elif isinstance(part, Return) and (place := self.builder.places[id(part)].get(wrong)):
-                what = f"this set controls the {self.control}"
-                self.builder.add(
-                    "E210",
-                    place,
-                    what,
-                    f'a rate in {right}, such as "return at 1 {right}"',
-                    Patch(*place, f"1 {right}"),
-                )
+                what, cure = f"this set controls the {self.control}", Patch(*place, f"1 {right}")
+                self.builder.add("E210", place, what, f'a rate in {right}, such as "return at 1 {right}"', cure)
 
     def return_slots(self, draft: IconDraft) -> None:
         wrong, right = ("rate", "A/s") if self.control == "current" else ("current_rate", "°C/s")
