@@ -88,7 +88,7 @@ class Record:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class RecordTable:
     """Records of one file, in its order."""
 
     name: str
@@ -138,7 +138,7 @@ class Table:
         return records[0]
 
 
-def load_records(path: Path | Traversable | str, *, extra: Iterable[str] = ()) -> Table:
+def load_records(path: Path | Traversable | str, *, extra: Iterable[str] = ()) -> RecordTable:
     """Read a TOML table of records with `extra` columns; RecordError names file, entry and cure."""
     file = Path(path) if isinstance(path, str) else path
     what = "table of records"
@@ -147,16 +147,16 @@ def load_records(path: Path | Traversable | str, *, extra: Iterable[str] = ()) -
     if set(tree) != {"record"} or not isinstance(tree["record"], list):
         raise RecordError(f"{file.name}: a table of records has [[record]] blocks and nothing else")
     declared = tuple(extra)
-    return Table(file.name, tuple(_record(file.name, i, entry, declared) for i, entry in enumerate(tree["record"], 1)))
+    return RecordTable(file.name, tuple(_record(file.name, *each, declared) for each in enumerate(tree["record"], 1)))
 
 
 @cache
-def shipped_records(name: str, *extra: str) -> Table:
+def shipped_records(name: str, *extra: str) -> RecordTable:
     """A table of `circuit/data` by its name; `extra` as in `load_records`."""
     return load_records(resources.files("thermicon.circuit") / "data" / name, extra=extra)
 
 
-def dump_records(table: Table, *, comment: str = "") -> str:
+def dump_records(table: RecordTable, *, comment: str = "") -> str:
     """TOML text that `load_records` reads back; `comment` heads the file."""
     lines = [f"# {line}".rstrip() for line in comment.splitlines()]
     for record in table:

@@ -1,5 +1,6 @@
 """The house rules that a machine can check, so that nobody has to remember them in a review."""
 
+import ast
 import doctest
 import importlib
 import io
@@ -8,6 +9,7 @@ import pkgutil
 import re
 import sys
 import tomllib
+from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -82,6 +84,16 @@ def test_no_module_is_too_long() -> None:
     }
     long = {str(path): n for path, n in lengths.items() if n > LINES_AT_MOST}
     assert not long, f"over {LINES_AT_MOST} lines, split where the idea splits: {long}"
+
+
+def test_no_two_classes_have_one_name() -> None:
+    places = defaultdict(list)
+    for path in (path for package in FLOW for path in sorted((ROOT / package).rglob("*.py"))):
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.ClassDef):
+                places[node.name].append(f"{path.relative_to(ROOT)}:{node.lineno}")
+    shared = [f"{name}: {', '.join(found)}" for name, found in sorted(places.items()) if len(found) > 1]
+    assert not shared, "one name, one thing; rename what is not public:\n" + "\n".join(shared)
 
 
 @pytest.mark.parametrize("what", UNWANTED)

@@ -8,7 +8,7 @@ import numpy as np
 
 from thermicon.icons import Icon
 
-from ..records import Table, shipped_records
+from ..records import RecordTable, shipped_records
 from ..rig.rig import Rig
 from ..solver.drive import Drive
 from ..solver.trace import Outcome, Trace
@@ -134,7 +134,7 @@ def delivery_deviation(designed: Trace, delivered: Trace) -> DeliveryDeviation:
     return DeliveryDeviation(tuple(deviations))
 
 
-def loss_table() -> Table:
+def loss_table() -> RecordTable:
     """The stated losses, each with its source."""
     return shipped_records("loss.toml")
 

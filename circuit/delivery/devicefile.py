@@ -31,7 +31,7 @@ def quantities() -> tuple[dict[str, dict[str, Any]], dict[str, list[str]]]:
     return table["quantities"], table["needed"]
 
 
-class RecordTable(KeyTable):
+class DeviceRecordTable(KeyTable):
     """One sourced number of a device."""
 
     quantity: Text
@@ -58,7 +58,7 @@ class DeviceTable(KeyTable):
     dc_coupled: bool = False
     played: bool = False
     note: Paragraph = ""
-    record: Annotated[list[RecordTable], Field(min_length=1, max_length=100)]
+    record: Annotated[list[DeviceRecordTable], Field(min_length=1, max_length=100)]
 
     def faults(self) -> Iterable[str]:
         """What its records state that no device has, and what they lack."""
@@ -93,7 +93,7 @@ def units_of(quantity: str) -> dict[str, str]:
     return dict(about.get("units") or dict.fromkeys(needed, about["unit"]))
 
 
-def _unit_faults(record: RecordTable, driven_by: str) -> Iterator[str]:
+def _unit_faults(record: DeviceRecordTable, driven_by: str) -> Iterator[str]:
     units, stated = units_of(record.quantity), record.unit
     required = units.get(driven_by)
     others = [f'"{drive}"' for drive, unit in units.items() if unit == stated]
@@ -109,7 +109,7 @@ def _unit_faults(record: RecordTable, driven_by: str) -> Iterator[str]:
         )
 
 
-def _number_faults(record: RecordTable) -> Iterator[str]:
+def _number_faults(record: DeviceRecordTable) -> Iterator[str]:
     about, unit = quantities()[0][record.quantity], record.unit
     low, high = record.low, record.high
     if about.get("interval"):
@@ -135,4 +135,4 @@ def _number_faults(record: RecordTable) -> Iterator[str]:
 
 
 def _nearest(place: Place) -> str:
-    return did_you_mean(str(place[-1]), (RecordTable if place[0] == "record" else DeviceTable).model_fields)
+    return did_you_mean(str(place[-1]), (DeviceRecordTable if place[0] == "record" else DeviceTable).model_fields)

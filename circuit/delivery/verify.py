@@ -13,7 +13,7 @@ RESTORE = "put the file back as it was exported, or export again"
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class Remark:
     """A finding about a file: `wrong` where it does not belong to the others, otherwise `told`; with the cure."""
 
     file: str
@@ -30,7 +30,7 @@ class Verification:
     """What each sidecar of a folder claims, by its name, and all findings; `well` where nothing is wrong."""
 
     claims: Mapping[str, Claims]
-    findings: tuple[Finding, ...]
+    findings: tuple[Remark, ...]
 
     @property
     def well(self) -> bool:
@@ -56,25 +56,25 @@ def verify(files: Mapping[str, bytes]) -> Verification:
         about = tables[name] or {}
         findings += [*_own(name, files[name], about), *_names(name, each, claims), *_program(name, about)]
     if not claims and all(finding.kind != "wrong" for finding in findings):
-        findings.append(Finding(".", "wrong", "holds no sidecar", "give a folder that was exported"))
+        findings.append(Remark(".", "wrong", "holds no sidecar", "give a folder that was exported"))
     return Verification(claims, tuple(findings))
 
 
-def _changed(files: Mapping[str, bytes], bound: Mapping[str, Mapping[str, str]]) -> Iterator[Finding]:
+def _changed(files: Mapping[str, bytes], bound: Mapping[str, Mapping[str, str]]) -> Iterator[Remark]:
     """Files against the digests in all sidecars that name them, and in the list of a study."""
     for file in dict.fromkeys(file for digests in bound.values() for file in digests):
         here = digest(files[file]) if file in files else None
         against = [name for name, digests in bound.items() if digests.get(file, here) != here]
         by = f"{against[0]} and {len(against) - 1} more" if len(against) > 1 else "".join(against)
         if here is None:
-            yield Finding(file, "wrong", f"is missing; it was exported with {by}", RESTORE)
+            yield Remark(file, "wrong", f"is missing; it was exported with {by}", RESTORE)
         elif against:
-            yield Finding(file, "wrong", f"is not the file that was exported with {by}: its digest differs", RESTORE)
+            yield Remark(file, "wrong", f"is not the file that was exported with {by}: its digest differs", RESTORE)
 
 
 def _unbound(
     files: Mapping[str, bytes], tables: Mapping[str, object], bound: Mapping[str, Mapping[str, str]]
-) -> Iterator[Finding]:
+) -> Iterator[Remark]:
     """Files that no digest covers: wrong where they look like a drive or a sidecar, since somebody might play them."""
     from .formats import format_names, load_format
 
@@ -82,44 +82,44 @@ def _unbound(
     covered = {*bound, *(file for digests in bound.values() for file in digests)}
     for name in sorted(set(files) - covered):
         if name in tables and tables[name] is None:
-            yield Finding(name, "wrong", "is damaged: it cannot be read as JSON, so it describes no drive", RESTORE)
+            yield Remark(name, "wrong", "is damaged: it cannot be read as JSON, so it describes no drive", RESTORE)
         elif name not in tables and name.lower().endswith(ends):
             text = "has no sidecar that can be read, so its content is unknown"
-            yield Finding(name, "wrong", text, "remove it, or export its icon again")
+            yield Remark(name, "wrong", text, "remove it, or export its icon again")
         else:
-            yield Finding(name, "told", "does not belong to an export and was not checked")
+            yield Remark(name, "told", "does not belong to an export and was not checked")
 
 
-def _own(name: str, content: bytes, about: Mapping[str, Any]) -> Iterator[Finding]:
+def _own(name: str, content: bytes, about: Mapping[str, Any]) -> Iterator[Remark]:
     """The sidecar against its own digest, byte for byte, and the rig and device in it against theirs."""
     if sidecar_text(sealed(about)) != content:
-        yield Finding(name, "wrong", "was changed after it was exported: its own digest does not match", RESTORE)
+        yield Remark(name, "wrong", "was changed after it was exported: its own digest does not match", RESTORE)
     rig = about.get("rig")
     document = rig.get("document") if isinstance(rig, dict) else None
     for what, held in (("rig", document), ("device", about.get("device"))):
         if digest_of_content(held) != about.get(f"{what}_sha256"):
             text = f"contains another {what} than the one of its digest ({what}_sha256)"
-            yield Finding(name, "wrong", text, RESTORE)
+            yield Remark(name, "wrong", text, RESTORE)
 
 
-def _names(name: str, claims: Claims, others: Mapping[str, Claims]) -> Iterator[Finding]:
+def _names(name: str, claims: Claims, others: Mapping[str, Claims]) -> Iterator[Remark]:
     """The sidecar's name against that of its drive, and against other sidecars of the same drive."""
     if not claims.drive.startswith(name.removesuffix("json")):
         text = f"describes {claims.drive}, which does not match this name"
-        yield Finding(name, "wrong", text, "rename it back, or export again")
+        yield Remark(name, "wrong", text, "rename it back, or export again")
     if twice := [each for each, other in others.items() if other.drive == claims.drive and each != name]:
-        yield Finding(name, "wrong", f"describes {claims.drive}, as {twice[0]} does", "remove the one that is a copy")
+        yield Remark(name, "wrong", f"describes {claims.drive}, as {twice[0]} does", "remove the one that is a copy")
 
 
-def _program(name: str, about: Mapping[str, Any]) -> Iterator[Finding]:
+def _program(name: str, about: Mapping[str, Any]) -> Iterator[Remark]:
     from ..rig.rig import Rig, rig_names
 
     rig = about.get("rig")
     shipped = rig.get("name") if isinstance(rig, dict) and not rig.get("changes") else None
     if shipped in rig_names() and digest(Rig.load(str(shipped)).document.encode("utf-8")) != about.get("rig_sha256"):
         text = f"was exported for a rig called {shipped} that differs from the rig that is shipped now"
-        yield Finding(name, "told", text)
+        yield Remark(name, "told", text)
     then, now = about.get("thermicon"), own_version()
     if about.get("program") != this_program() or then != now:
         by = f"thermicon {then}, this is {now}" if then != now else f"other code of version {now}"
-        yield Finding(name, "told", f"was exported by {by}; if it is exported again, the drive may differ")
+        yield Remark(name, "told", f"was exported by {by}; if it is exported again, the drive may differ")

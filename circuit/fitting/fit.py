@@ -18,7 +18,7 @@ from .keys import CONTACT, FitError, FitKey, free_keys, possible_keys
 from .log import Log, LogError, read_log
 from .notes import beyond_noise, disagreement, far_off, kept, late_column, remarks, too_narrow
 from .overlay import aligned, check_clocks, check_sensors
-from .problem import OFFSET_SD_K, Problem, changed_layers
+from .problem import OFFSET_SD_K, FitProblem, changed_layers
 from .rig_fit import RigFit, channel_fits, reason_of, uncertainties
 from .runs import DISPLAY, Run, runs_of
 from .solve import Solution, solve
@@ -99,7 +99,7 @@ def fit(
         free = _told(rig, runs, alone, offset_K, fixed_skin)
         notes.insert(0, f"no keys were named; the logs tell best {', '.join(free)}")
     keys = free_keys((free,) if isinstance(free, str) else free, rig, alone)
-    problem = Problem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin)
+    problem = FitProblem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin)
     check_sensors(problem)
     solution = solve(problem)
     check_clocks(problem, solution.theta)
@@ -109,7 +109,7 @@ def fit(
 
 def _told(rig: Rig, runs: tuple[Run, ...], alone: bool, offset_K: float, fixed_skin: bool) -> tuple[str, ...]:
     keys = possible_keys(rig, alone)
-    told = tellable(Problem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin))
+    told = tellable(FitProblem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin))
     if not told and alone:  # with the outermost layer, in series
         return (CONTACT,)
     if not told:
@@ -140,7 +140,7 @@ def _explicit(rig: Rig, keys: Sequence[FitKey]) -> Rig:
 
 
 def _result(
-    problem: Problem, solution: Solution, start: Rig, keys: tuple[FitKey, ...], sources: tuple[tuple[str, str], ...],
+    problem: FitProblem, solution: Solution, start: Rig, keys: tuple[FitKey, ...], sources: tuple[tuple[str, str], ...],
     notes: list[str],
 ) -> RigFit:  # fmt: skip
     missed = beyond_noise(problem, solution.theta, solution.inflation)

@@ -10,7 +10,7 @@ from ..arrays import Array
 from ..rig.faults import unit_of
 from ..rig.rig import Rig
 from .keys import CONTACT, value_of
-from .problem import Problem
+from .problem import FitProblem
 from .runs import Channel, Run
 from .solve import Solution, covariance_of
 
@@ -37,7 +37,7 @@ LATE_FIRST = "first give the late column a file of its own, and fit again"
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class FittedParameter:
     """One fitted parameter: what the rig had (`start`), what was fitted, and the ends of its 95 % interval.
 
     `log`: a scale, with a relative interval. `identified`: the interval is narrower than what is assumed anyway;
@@ -75,7 +75,7 @@ def width_text(log: bool, width: float, unit: str) -> str:
 
 
 def half_width(log: bool, sd: float) -> float:
-    """Half of a 95 % interval from the standard deviation of a fitted number, as `Parameter.half_width`."""
+    """Half of a 95 % interval from the standard deviation of a fitted number, as `FittedParameter.half_width`."""
     return math.expm1(min(T95 * sd, 50.0)) if log else T95 * sd
 
 
@@ -85,8 +85,8 @@ def is_identified(log: bool, sd: float, usual: float) -> bool:
 
 
 def identified(
-    problem: Problem, solution: Solution, start: Rig, *, late: bool = False
-) -> tuple[tuple[Parameter, ...], Array]:
+    problem: FitProblem, solution: Solution, start: Rig, *, late: bool = False
+) -> tuple[tuple[FittedParameter, ...], Array]:
     """The free keys with intervals, against the rig as given, and correlations; a `late` column is mended first."""
     count, theta = len(problem.keys), solution.theta
     deviation = np.sqrt(np.diag(solution.covariance)[:count])
@@ -110,7 +110,7 @@ def identified(
             low = max(low, 0.0)
         assert before is not None
         parameters.append(
-            Parameter(
+            FittedParameter(
                 key.key, key.words, unit_of(key.key), before, value, low, high, key.log, k not in wanting,
                 advice.get(k, ""),
             )
@@ -118,14 +118,14 @@ def identified(
     return tuple(parameters), correlation
 
 
-def _at_bound(problem: Problem, theta: Array, place: int) -> bool:
+def _at_bound(problem: FitProblem, theta: Array, place: int) -> bool:
     item = problem.unknowns[place]
     near = BOUND * (item.high - item.low)
     low = theta[place] - item.low < near and not problem.keys[place].key.endswith("lag_s")
     return bool(low or item.high - theta[place] < near)
 
 
-def with_channels(problem: Problem, theta: Array, columns: Sequence[str], only: bool = False) -> Problem:
+def with_channels(problem: FitProblem, theta: Array, columns: Sequence[str], only: bool = False) -> FitProblem:
     """Return the problem with further channels in every run, read on the drive's clock; `only`: in place of its own."""
     found = problem.simulated(theta)
     runs = []
@@ -139,7 +139,7 @@ def with_channels(problem: Problem, theta: Array, columns: Sequence[str], only: 
     return problem.again(problem.rig, problem.keys, tuple[Run, ...](runs))
 
 
-def expected_sd(problem: Problem, theta: Array) -> Array:
+def expected_sd(problem: FitProblem, theta: Array) -> Array:
     """Standard deviations of the keys to expect from a problem's channels with white noise."""
     count = len(problem.keys)
     point = problem.first.copy()
@@ -149,7 +149,7 @@ def expected_sd(problem: Problem, theta: Array) -> Array:
     return np.sqrt(np.diag(covariance)[:count])
 
 
-def tellable(problem: Problem) -> tuple[str, ...]:
+def tellable(problem: FitProblem) -> tuple[str, ...]:
     """Free keys that the channels tell together: all better known than assumed, none much worse than without another.
 
     Noise is that of ten independent readings a second.
@@ -176,7 +176,7 @@ def tellable(problem: Problem) -> tuple[str, ...]:
     return tuple(problem.keys[k].key for k in told)
 
 
-def in_series(problem: Problem, solution: Solution) -> tuple[str, ...]:
+def in_series(problem: FitProblem, solution: Solution) -> tuple[str, ...]:
     """A sentence on contact and outermost layer in series, which a display without a current tells best."""
     contact = [k for k, key in enumerate(problem.keys) if key.key == CONTACT]
     if not (contact and problem.alone):
@@ -193,7 +193,7 @@ def in_series(problem: Problem, solution: Solution) -> tuple[str, ...]:
     return (f"the display is the drive: {what}",)
 
 
-def cures(problem: Problem, theta: Array, wanting: Sequence[int], correlation: Array) -> dict[int, str]:
+def cures(problem: FitProblem, theta: Array, wanting: Sequence[int], correlation: Array) -> dict[int, str]:
     """Return for each parameter that is not identified which measurement would identify it."""
     if not wanting:
         return {}
@@ -203,7 +203,7 @@ def cures(problem: Problem, theta: Array, wanting: Sequence[int], correlation: A
     return {place: _cure(problem, place, gains, correlation) for place in wanting}
 
 
-def _cure(problem: Problem, place: int, gains: dict[str, Array], correlation: Array) -> str:
+def _cure(problem: FitProblem, place: int, gains: dict[str, Array], correlation: Array) -> str:
     key = problem.keys[place]
     good = {name: sd[place] for name, sd in gains.items() if is_identified(key.log, float(sd[place]), key.usual)}
     with_what = [

@@ -13,7 +13,7 @@ from ..solver.simulate import simulate
 from .identify import NOISE_K, NOISE_V, expected_sd, half_width, is_identified, tellable, with_channels
 from .keys import FitError, FitKey, free_keys, possible_keys
 from .log import Log
-from .problem import OFFSET_SD_K, Problem
+from .problem import OFFSET_SD_K, FitProblem
 from .runs import runs_of
 
 COLUMNS = ("display_C", "voltage_V")
@@ -88,13 +88,13 @@ def plan(
     log = synthetic_log(rig, seed=0, columns=["display_C"], noise_K=0.0, offset_sd_K=0.0, rate_Hz=PLAN_HZ)
     runs = runs_of([log])
     if free is None:
-        problem = Problem.of(rig, possible_keys(rig), runs, offset_K, fixed_skin)
+        problem = FitProblem.of(rig, possible_keys(rig), runs, offset_K, fixed_skin)
         free = tellable(with_channels(problem, problem.first, CHOICES[-1], only=True))
-    problem = Problem.of(rig, free_keys(free, rig), runs, offset_K, fixed_skin)
+    problem = FitProblem.of(rig, free_keys(free, rig), runs, offset_K, fixed_skin)
     return tuple(_expected(problem, columns) for columns in CHOICES)
 
 
-def _expected(problem: Problem, columns: tuple[str, ...]) -> Expected:
+def _expected(problem: FitProblem, columns: tuple[str, ...]) -> Expected:
     deviations = expected_sd(with_channels(problem, problem.first, columns, only=True), problem.first)
     each = [(key, float(sd)) for key, sd in zip(problem.keys, deviations, strict=True)]
     widths = tuple(half_width(key.log, sd) for key, sd in each)

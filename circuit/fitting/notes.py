@@ -12,9 +12,9 @@ import numpy as np
 from ..arrays import Array
 from ..rig.uncertainty import Uncertainty
 from .between import MAD_TO_SD
-from .identify import Parameter
+from .identify import FittedParameter
 from .keys import free_keys, possible_keys
-from .problem import Problem, Unknown
+from .problem import FitProblem, Unknown
 from .rig_fit import LARGEST, channel_fits
 from .runs import Channel
 from .solve import Solution, covariance_of, huber, parts_of, solve
@@ -29,7 +29,7 @@ OFFSET_SDS = 3.0
 
 
 def disagreement(
-    problem: Problem, solution: Solution, missed: Sequence[str], late: str, unknown: Sequence[Parameter]
+    problem: FitProblem, solution: Solution, missed: Sequence[str], late: str, unknown: Sequence[FittedParameter]
 ) -> tuple[tuple[str, ...], str]:
     """What rig and logs do not agree in, and why in a few words; `missed` and `late` are sentences on channels."""
     if late:
@@ -48,7 +48,7 @@ def disagreement(
     return (*missed, f"intervals may be too narrow, since what is held fixed is taken as right: {cure}"), NO_MATCH
 
 
-def _combined(problem: Problem, theta: Array, unknown: Sequence[Parameter]) -> tuple[str, ...]:
+def _combined(problem: FitProblem, theta: Array, unknown: Sequence[FittedParameter]) -> tuple[str, ...]:
     """A sentence where keys that are not identified matter together, so that the rig that keeps them misses the log."""
     names = {item.key for item in unknown}
     places = [k for k, key in enumerate(problem.keys) if key.key in names]
@@ -62,7 +62,7 @@ def _combined(problem: Problem, theta: Array, unknown: Sequence[Parameter]) -> t
     )
 
 
-def remarks(problem: Problem, theta: Array, *, misfit: bool = False) -> tuple[str, ...]:
+def remarks(problem: FitProblem, theta: Array, *, misfit: bool = False) -> tuple[str, ...]:
     """Sentences on drives, starts, sensors and clocks; with a `misfit` an offset is a consequence and no fault."""
     sentences = [*_slow_drives(problem), *unsteady(problem, theta)]
     sentences += [_offset(channel, offset, problem.offset_sd_K, misfit) for channel, offset in far_off(problem, theta)]
@@ -77,7 +77,7 @@ def remarks(problem: Problem, theta: Array, *, misfit: bool = False) -> tuple[st
     return tuple(sentences)
 
 
-def far_off(problem: Problem, theta: Array) -> list[tuple[Channel, float]]:
+def far_off(problem: FitProblem, theta: Array) -> list[tuple[Channel, float]]:
     """Sensors that are off by more than they are assumed to be, with the offset in K."""
     offsets = [(channel, problem.nuisance(theta, "offset", r, c)) for r, c, channel in problem.channels()]
     return [(channel, offset) for channel, offset in offsets if abs(offset) > OFFSET_SDS * problem.offset_sd_K > 0]
@@ -94,7 +94,7 @@ def _offset(channel: Channel, offset_K: float, usual_K: float, misfit: bool) -> 
     )
 
 
-def _slow_drives(problem: Problem) -> list[str]:
+def _slow_drives(problem: FitProblem) -> list[str]:
     return [
         f"{run.name}: rows are {1e3 * run.step_s:.0f} ms apart, and the rig's driver may change every "
         f"{1e3 / problem.rig.update_Hz:.0f} ms: what it did in between is not in the log, and intervals allow for it; "
@@ -104,7 +104,7 @@ def _slow_drives(problem: Problem) -> list[str]:
     ]
 
 
-def unsteady(problem: Problem, theta: Array) -> list[str]:
+def unsteady(problem: FitProblem, theta: Array) -> list[str]:
     """Runs whose first seconds fit much worse than the rest."""
     names = []
     for each, (_, _, channel) in zip(channel_fits(problem, theta), problem.channels(), strict=True):
@@ -120,7 +120,7 @@ def unsteady(problem: Problem, theta: Array) -> list[str]:
     ]
 
 
-def kept(parameters: Sequence[Parameter]) -> tuple[str, ...]:
+def kept(parameters: Sequence[FittedParameter]) -> tuple[str, ...]:
     """What the fitted rig keeps of the rig before, since the logs do not say it."""
     values = ", ".join(f"{item.key} = {item.start:.4g} {item.unit}".rstrip() for item in parameters)
     return (f"not identified, so that the fitted rig keeps what the rig before had: {values}",) if values else ()
@@ -148,7 +148,7 @@ LATE_SD_S, MOST_LATE_S, LEAST_LATE_S, LATE_SDS = 1.0, 5.0, 0.01, 5.0
 standard deviations of the delay itself."""
 
 
-def beyond_noise(problem: Problem, theta: Array, inflation: Sequence[float] = ()) -> tuple[str, ...]:
+def beyond_noise(problem: FitProblem, theta: Array, inflation: Sequence[float] = ()) -> tuple[str, ...]:
     """A sentence on each channel whose residuals exceed its noise or, by the `inflation`, have a structure."""
     sentences, noises = list[str](), [channel.noise for _, _, channel in problem.channels()]
     sizes = parts_of(problem, problem.residuals(theta, [max(noise, 1e-9) for noise in noises]))
@@ -168,7 +168,7 @@ def beyond_noise(problem: Problem, theta: Array, inflation: Sequence[float] = ()
     return tuple(sentences)
 
 
-def late_column(problem: Problem, solution: Solution) -> str:
+def late_column(problem: FitProblem, solution: Solution) -> str:
     """On the column whose delay explains the residuals best, if any; a step of Gauss and Newton tells which to fit."""
     best, sentence = np.inf, ""
     for r, c, channel in problem.channels():
@@ -195,7 +195,7 @@ def late_column(problem: Problem, solution: Solution) -> str:
     return sentence
 
 
-def explaining(problem: Problem, solution: Solution) -> list[str]:
+def explaining(problem: FitProblem, solution: Solution) -> list[str]:
     """Fixed keys that would take away most of the sum of squares in one step of Gauss and Newton, the best first."""
     rig = problem.rig.with_(**problem.values(solution.theta))
     own = [key.key for key in problem.keys]

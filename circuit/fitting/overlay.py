@@ -12,7 +12,7 @@ from ..solver.trace import Trace
 from .forward import Prediction, predict
 from .keys import FitError
 from .log import Log, LogError
-from .problem import Problem
+from .problem import FitProblem
 from .runs import Channel, Run
 
 SHIFTED_BY = ("display_C", "skin_C", "voltage_V", "current_A", "hot_plate_C")
@@ -177,7 +177,7 @@ def _shift_s(run: Run, found: Prediction, clock: int) -> float:
     return best[0]
 
 
-def check_sensors(problem: Problem) -> None:
+def check_sensors(problem: FitProblem) -> None:
     """Raise LogError for every sensor that is stuck, unplugged or of the wrong sign, as the rig to begin with says."""
     found = problem.simulated(problem.first)
     faults = [
@@ -223,7 +223,7 @@ def _sensor_fault(channel: Channel, time: Array, expected: Array) -> str | None:
     return None
 
 
-def check_clocks(problem: Problem, theta: Array) -> None:
+def check_clocks(problem: FitProblem, theta: Array) -> None:
     """Raise LogError for a clock that runs at another rate than that of the drive."""
     for r, run in enumerate(problem.runs):
         for clock, name in enumerate(run.clocks, 1):

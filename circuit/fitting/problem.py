@@ -72,7 +72,7 @@ class Unknown:
 
 
 @dataclass(slots=True, eq=False)
-class Problem:
+class FitProblem:
     """A rig, its free keys and the runs; a point is `theta`, a number for each of `unknowns`, the keys first."""
 
     rig: Rig
@@ -91,7 +91,7 @@ class Problem:
         runs: tuple[Run, ...],
         offset_sd_K: float = OFFSET_SD_K,
         fixed_skin: bool = False,
-    ) -> Problem:
+    ) -> FitProblem:
         """Return the problem of fitting keys of a rig to runs, beginning at the rig's own values."""
         layers = {} if fixed_skin else layer_priors(rig)
         unknowns = (
@@ -99,7 +99,7 @@ class Problem:
             *_along(runs, offset_sd_K),
             *(Unknown(kind, 0, k, sd, low=-1.0, high=1.0, step=STEP_LOG) for (kind, k), sd in layers.items()),
         )
-        return Problem(rig, keys, runs, offset_sd_K, fixed_skin, unknowns)
+        return FitProblem(rig, keys, runs, offset_sd_K, fixed_skin, unknowns)
 
     @property
     def first(self) -> Array:
@@ -121,9 +121,9 @@ class Problem:
         """Whether no run has a known current, so that the display is the drive."""
         return all(run.driven_by == DISPLAY for run in self.runs)
 
-    def again(self, rig: Rig, keys: tuple[FitKey, ...], runs: tuple[Run, ...]) -> Problem:
+    def again(self, rig: Rig, keys: tuple[FitKey, ...], runs: tuple[Run, ...]) -> FitProblem:
         """Another rig, keys or runs, with the same fitted along."""
-        return Problem.of(rig, keys, runs, self.offset_sd_K, self.fixed_skin)
+        return FitProblem.of(rig, keys, runs, self.offset_sd_K, self.fixed_skin)
 
     def values(self, theta: Array) -> dict[str, float]:
         """Values of the free keys in the units of the rig file."""
@@ -226,7 +226,7 @@ class Problem:
             out[:, k] = (self.residuals(moved, sigma) - base) / step
         return out
 
-    def with_unknown(self, item: Unknown) -> Problem:
+    def with_unknown(self, item: Unknown) -> FitProblem:
         """The problem with something more fitted along that changes how a run is read, and not the run."""
         wide = replace(self, unknowns=(*self.unknowns, item))
         wide._kept, wide._shared = self._kept, self._shared

@@ -18,10 +18,10 @@ from ..program import own_version
 from ..rig.rig import Rig
 from ..rig.settings import toml_text
 from ..rig.uncertainty import Uncertainty
-from .identify import Parameter
+from .identify import FittedParameter
 from .keys import FitKey
 from .overlay import Beside
-from .problem import Problem
+from .problem import FitProblem
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -50,7 +50,7 @@ class RigFit(Tabled):
     """
 
     rig: Rig
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[FittedParameter, ...]
     correlation: Array
     channels: tuple[ChannelFit, ...]
     sources: tuple[tuple[str, str], ...]
@@ -63,7 +63,7 @@ class RigFit(Tabled):
         parts = [f"{item.key} = {item.value:.4g} {item.unit} {item.interval}" for item in self.parameters]
         return f"RigFit({self.rig.name}: {', '.join(parts)})"
 
-    def __getitem__(self, key: str) -> Parameter:
+    def __getitem__(self, key: str) -> FittedParameter:
         """The parameter of a key; raises KeyError with the keys there are."""
         fitted = {item.key: item for item in self.parameters}
         if key not in fitted:
@@ -71,7 +71,7 @@ class RigFit(Tabled):
         return fitted[key]
 
     @property
-    def unidentified(self) -> tuple[Parameter, ...]:
+    def unidentified(self) -> tuple[FittedParameter, ...]:
         """Parameters that the logs do not identify, each with the measurement that would."""
         return tuple(item for item in self.parameters if not item.identified)
 
@@ -127,7 +127,7 @@ class RigFit(Tabled):
             raise FitError(str(problem)) from None
 
 
-def channel_fits(problem: Problem, theta: Array) -> tuple[ChannelFit, ...]:
+def channel_fits(problem: FitProblem, theta: Array) -> tuple[ChannelFit, ...]:
     """Return every channel beside the simulation at a point, on the clock of its run's drive."""
     found = problem.simulated(theta)
     fits = []
@@ -163,7 +163,7 @@ LARGEST = {
 
 def uncertainties(
     keys: Sequence[FitKey],
-    parameters: Sequence[Parameter],
+    parameters: Sequence[FittedParameter],
     *,
     before: Uncertainty,
     misfit: bool = False,
@@ -191,7 +191,7 @@ def uncertainties(
     return stated
 
 
-def _covering(item: Parameter, before: float) -> float:
+def _covering(item: FittedParameter, before: float) -> float:
     """Half width that holds the fitted interval and the one before; the value alone where the interval says nothing."""
     if not item.identified:
         return abs(item.value - item.start) / (item.start if item.log else 1.0)

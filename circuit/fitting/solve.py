@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from .between import MAD_TO_SD
-from .problem import Problem
+from .problem import FitProblem
 
 ROUNDS: tuple[tuple[float, Literal["linear", "huber"]], ...] = ((1e-3, "linear"), (1e-5, "huber"), (1e-6, "huber"))
 """Relative change of the sum of squares at which each round ends, and its loss; the first finds the noise alone."""
@@ -40,7 +40,7 @@ class Solution:
     converged: bool
 
 
-def solve(problem: Problem, begin: Array | None = None, evaluations: int = MOST_EVALUATIONS) -> Solution:
+def solve(problem: FitProblem, begin: Array | None = None, evaluations: int = MOST_EVALUATIONS) -> Solution:
     """Fit, from the problem's own first point or another, with so many evaluations a round at most."""
     from scipy.optimize import least_squares
 
@@ -70,13 +70,13 @@ def huber(residuals: Array) -> float:
     return float(np.sum(np.where(size <= OUTLIER, size**2, 2 * OUTLIER * size - OUTLIER**2)))
 
 
-def parts_of(problem: Problem, residuals: Array) -> list[Array]:
+def parts_of(problem: FitProblem, residuals: Array) -> list[Array]:
     """Residuals of each channel."""
     ends = np.cumsum([len(channel.values) for _, _, channel in problem.channels()])
     return list(np.split(residuals, ends))[:-1]
 
 
-def spreads(problem: Problem, theta: Array, before: Sequence[float] = ()) -> tuple[float, ...]:
+def spreads(problem: FitProblem, theta: Array, before: Sequence[float] = ()) -> tuple[float, ...]:
     """Robust SD of each channel's residuals, made independent by the noise `before`, and at least that between rows."""
     channels = [channel for _, _, channel in problem.channels()]
     least = [max(channel.noise, LEAST_SD[channel.temperature]) for channel in channels]
@@ -98,7 +98,7 @@ def alike(residuals: Array) -> float:
     return float(min((1 + neighbour) / max(1 - neighbour, 1e-9), max(1.0, count / FEWEST_INDEPENDENT)))
 
 
-def covariance_of(problem: Problem, jacobian: Array, inflation: Sequence[float], mesh: Array | None = None) -> Array:
+def covariance_of(problem: FitProblem, jacobian: Array, inflation: Sequence[float], mesh: Array | None = None) -> Array:
     """Covariance of all parameters; what no row and no prior fixes gets the width of its room.
 
     The sandwich form H⁻¹·B·H⁻¹, where B counts alike neighbouring rows once, and the error of the mesh in `residuals`

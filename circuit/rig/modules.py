@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from thermicon.icons.near_words import did_you_mean
 
-from ..records import Record, RecordError, Table, shipped_records
+from ..records import Record, RecordError, RecordTable, shipped_records
 from .faults import PARAMETERS, Unusual, sentence, unusual
 from .module import Datasheet, Extraction, Peltier, at_mean_C
 from .rigfile import ModuleTable
@@ -37,7 +37,7 @@ class ModuleOrigin:
     warnings: tuple[Unusual, ...] = ()
 
 
-def module_table() -> Table:
+def module_table() -> RecordTable:
     """The shipped modules as sourced records, one for each data sheet."""
     return shipped_records("modules.toml", *COLUMNS)
 

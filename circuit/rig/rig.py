@@ -24,7 +24,7 @@ from .rig_words import rig_summary, rig_warnings
 from .rigfile import Ambient, Controller, RigError, RigTable, Thermode, parse_toml, read_table
 from .rules import Limits
 from .settings import changed, flattened, put_all, read_settings, toml_text
-from .skin import Column, Skin, column_of
+from .skin import Skin, SkinColumn, column_of
 from .uncertainty import Uncertainty
 
 
@@ -81,7 +81,7 @@ class Rig:
     contact: Contact
     ambient: Ambient
     skin: Skin
-    column: Column
+    column: SkinColumn
     deep_C: float
     document: str
     uncertainty: Uncertainty

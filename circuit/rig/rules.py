@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 
-from ..records import Record, Table, shipped_records
+from ..records import Record, RecordTable, shipped_records
 from .faults import sentence
 
 SHORTEST_REASON, FEWEST_WORDS = 20, 4
@@ -125,7 +125,7 @@ class Limits:
         return {"changed": list(self.changed), "loosened": list(self.loosened), "reason": self.reason or None}
 
 
-def limit_table() -> Table:
+def limit_table() -> RecordTable:
     """The shipped limits, each with its source."""
     return shipped_records("limits.toml", *_EXTRA)
 

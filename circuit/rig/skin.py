@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..arrays import Array
-from ..records import Table, shipped_records
+from ..records import RecordTable, shipped_records
 from .faults import sentence
 
 STRATUM_CORNEUM = "stratum corneum"
@@ -25,7 +25,7 @@ display by 30 to 50 °C.
 """
 
 
-def layer_spreads() -> Table:
+def layer_spreads() -> RecordTable:
     """How the layers of people's skin differ from those of a rig file, each with its source."""
     return shipped_records("skin-spread.toml")
 
@@ -122,7 +122,7 @@ class Skin:
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class SkinColumn:
     """A skin column of n lumps, per unit area, face first; arrays are read-only.
 
     `depth_m` (n,), `capacity_J_per_m2K` (n,), `perfusion_W_per_m2K` (n,) to blood, `resistance_m2K_per_W` (n + 1,):
@@ -149,14 +149,14 @@ class Column:
 
 def column_of(
     skin: Skin, blood_capacity_J_per_m3K: float, first_cell_m: float = FIRST_CELL_M, growth: float = CELL_GROWTH
-) -> Column:
+) -> SkinColumn:
     """Return the lumps of a skin: T-sections where it has fixed elements, otherwise the graded mesh."""
     if skin.elements is not None:
         return _sections(skin, blood_capacity_J_per_m3K)
     return _graded(skin, blood_capacity_J_per_m3K, first_cell_m, growth)
 
 
-def _graded(skin: Skin, blood: float, first: float, growth: float) -> Column:
+def _graded(skin: Skin, blood: float, first: float, growth: float) -> SkinColumn:
     boundaries = np.cumsum([0.0] + [layer.thickness_m for layer in skin.layers])
     fixed = np.concatenate([boundaries, [skin.cold_receptor_m, skin.warm_receptor_m]])
     fixed = np.sort(fixed)
@@ -176,10 +176,10 @@ def _graded(skin: Skin, blood: float, first: float, growth: float) -> Column:
     capacity[1:] += heat[:-1] / 2
     perfusion[1:] += perfused[:-1] / 2
     resistance = np.concatenate([[0.0], cell / per[2][layer_of]])
-    return Column(node[:-1].copy(), capacity, perfusion, resistance, blood)
+    return SkinColumn(node[:-1].copy(), capacity, perfusion, resistance, blood)
 
 
-def _sections(skin: Skin, blood: float) -> Column:
+def _sections(skin: Skin, blood: float) -> SkinColumn:
     assert skin.elements is not None
     per = _per_layer(skin, blood)
     layer_of = np.repeat(np.arange(len(skin.layers)), skin.elements)
@@ -190,7 +190,7 @@ def _sections(skin: Skin, blood: float) -> Column:
     resistance = np.concatenate([half, [0.0]])
     resistance[1:] += half
     depth = np.cumsum(cell) - cell / 2
-    return Column(depth, per[0][layer_of] * cell, per[1][layer_of] * cell, resistance, blood)
+    return SkinColumn(depth, per[0][layer_of] * cell, per[1][layer_of] * cell, resistance, blood)
 
 
 def _per_layer(skin: Skin, blood: float) -> tuple[Array, Array, Array]:

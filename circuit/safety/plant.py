@@ -35,7 +35,7 @@ Stretch = tuple[Array, Array]
 """Times in s (rows,) and WATCHED (4, lanes, rows) in °C."""
 
 
-class Play(Protocol):
+class GatePlay(Protocol):
     """What is played: currents, or temperatures of a display."""
 
     @property
@@ -51,7 +51,7 @@ class Play(Protocol):
         """How much of it is part of the pause, in s: until a display has arrived."""
 
 
-Played = TypeVar("Played", bound=Play)
+Played = TypeVar("Played", bound=GatePlay)
 States = TypeVar("States")
 """States of all corners, which only their plant reads."""
 
@@ -154,7 +154,7 @@ class Plant(ABC, Generic[Played, States]):
         return None
 
 
-def left_s(play: Play, pause_s: float) -> float:
+def left_s(play: GatePlay, pause_s: float) -> float:
     """Remaining time in s of a pause after the last row of a play."""
     return max(0.0, pause_s - play.settling_s)
 

@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..inputs import InputError
 from ..rig.rules import Limits
 from .checks import Before, Check, Judged, Scenario, colour_of
-from .plant import RECOVERY_ROWS_S, Plant, Play, Played, States, follow, left_s
+from .plant import RECOVERY_ROWS_S, GatePlay, Plant, Played, States, follow, left_s
 from .tally import Tally
 
 LONGEST_PAUSE_S = 600.0
@@ -158,7 +158,7 @@ class Repeating(Generic[Played, States]):
             yield from tallies
 
 
-def plays_in(play: Play, pause_s: float, session_s: float) -> int:
+def plays_in(play: GatePlay, pause_s: float, session_s: float) -> int:
     """Number of plays that fit into a session; at least one."""
     return max(1, math.floor((session_s + pause_s) / (play.end_s + left_s(play, pause_s)) + 1e-9))
 

@@ -152,7 +152,7 @@ def _check_count(plays: int, what: str) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Play:
+class SessionPlay:
     """One icon in a session, on the rig as given: from its start until the next one starts, or the session ends.
 
     `drift_K` is the skin just before it minus the skin before the first play. `verdict` is green, amber or red, and
@@ -217,7 +217,7 @@ class Session(Tabled, Judged):
     tracking: str
     rest_A: float
     trace: Trace
-    plays: tuple[Play, ...]
+    plays: tuple[SessionPlay, ...]
     limits: Limits
     uncertainty: Uncertainty
     scenarios: int
@@ -259,10 +259,10 @@ class Session(Tabled, Judged):
         return max(hard, key=lambda check: check.beyond, default=None)
 
     def to_frame(self) -> pd.DataFrame:
-        """Return one row per play, with the fields of a Play as columns."""
+        """Return one row per play, with the fields of a SessionPlay as columns."""
         import pandas as pd
 
-        return pd.DataFrame([asdict(play) for play in self.plays], columns=[field.name for field in fields(Play)])
+        return pd.DataFrame([asdict(play) for play in self.plays], columns=[each.name for each in fields(SessionPlay)])
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the temperatures with a grey band for every play; returns the Axes."""

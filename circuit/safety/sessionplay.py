@@ -9,7 +9,7 @@ between the block within one run without breaks and the block from rest: both ar
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -33,7 +33,7 @@ from .checks import Check, Judged, worst_of
 from .current import CurrentPlant, CurrentPlay
 from .ensemble import Ensemble
 from .plant import Single
-from .session import Play, Session, SessionError, SessionPlan, check_length
+from .session import Session, SessionError, SessionPlan, SessionPlay, check_length
 from .tally import WATCHED, Tally, cem43_min, henriques
 from .verdict import SafetyVerdict, checks_of
 
@@ -226,7 +226,7 @@ def play_session(
     rules = rig.limits if limits is None else limits
     worst = worst_case_of([played], rig, rules, progress)
     power = np.append(trace.voltage_V[:-1] * trace.current_A[:-1] * np.diff(trace.time_s), 0.0)
-    plays = _plays(plan, played, trace, rules, power)
+    plays = tuple(_plays(plan, played, trace, rules, power))
     return Session(
         plan=plan,
         tracking=tracking,
@@ -244,31 +244,30 @@ def play_session(
     )
 
 
-def _plays(plan: SessionPlan, played: SessionDrive, trace: Trace, limits: Limits, energy_J: Array) -> tuple[Play, ...]:
+def _plays(
+    plan: SessionPlan, played: SessionDrive, trace: Trace, limits: Limits, energy_J: Array
+) -> Iterator[SessionPlay]:
     first = np.rint(np.array(played.starts_s) * played.rate_Hz).astype(np.int64)
-    plays, rest = [], float(trace.skin_C[0])
+    rest = float(trace.skin_C[0])
     for place, (begin, until) in enumerate(pairwise([*first.tolist(), len(trace.time_s) - 1])):
         rows = slice(begin, until + 1)
         times, skin, display = trace.time_s[rows], trace.skin_C[rows], trace.display_C[rows]
         columns = {name: getattr(trace, name)[np.newaxis, rows] for name in WATCHED}
         verdict = SafetyVerdict(checks_of(limits, times, columns))
-        plays.append(
-            Play(
-                icon=plan.order[place],
-                start_s=played.starts_s[place],
-                end_s=played.ends_s[place],
-                verdict=verdict.colour,
-                reason=verdict.reason or next(iter(verdict.cautions), None),
-                drift_K=float(skin[0]) - rest,
-                skin_min_C=float(skin.min()),
-                skin_max_C=float(skin.max()),
-                display_min_C=float(display.min()),
-                display_max_C=float(display.max()),
-                dose_cem43_min=float(cem43_min(times, skin)[-1]),
-                energy_J=float(energy_J[begin:until].sum()),
-            )
+        yield SessionPlay(
+            icon=plan.order[place],
+            start_s=played.starts_s[place],
+            end_s=played.ends_s[place],
+            verdict=verdict.colour,
+            reason=verdict.reason or next(iter(verdict.cautions), None),
+            drift_K=float(skin[0]) - rest,
+            skin_min_C=float(skin.min()),
+            skin_max_C=float(skin.max()),
+            display_min_C=float(display.min()),
+            display_max_C=float(display.max()),
+            dose_cem43_min=float(cem43_min(times, skin)[-1]),
+            energy_J=float(energy_J[begin:until].sum()),
         )
-    return tuple(plays)
 
 
 def worst_case_of(

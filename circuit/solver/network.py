@@ -19,7 +19,7 @@ import numpy as np
 from ..arrays import Array, Index
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
-from ..rig.skin import Column
+from ..rig.skin import SkinColumn
 
 ALPHA, RESISTANCE, CONDUCTANCE, HOT_J_PER_K, COLD_J_PER_K, SINK_C, SINK_W_PER_K, DEEP_C = range(8)
 """Places in `Network.plates` of the module's α V/K, R Ω and 1/Θ W/K, of both heat capacities, of the heat sink's
@@ -188,7 +188,7 @@ def skin_network_of(rig: Rig) -> Network:
     return _network(rig, rig.column, plates)
 
 
-def network_on(rig: Rig, column: Column, deep_C: float) -> Network:
+def network_on(rig: Rig, column: SkinColumn, deep_C: float) -> Network:
     """Return the lumps of a rig on another column of its skin, over a deep (and blood) temperature in °C."""
     module, driver, controller = rig.module, rig.driver, rig.heat_sink.controller
     plates = np.zeros(PLATE_NUMBERS)
@@ -215,7 +215,7 @@ def unpowered(network: Network, sink_C: float) -> Network:
     return replace(network, plates=plates)
 
 
-def _network(rig: Rig, column: Column, plates: Array) -> Network:
+def _network(rig: Rig, column: SkinColumn, plates: Array) -> Network:
     area = rig.contact.area_m2
     resistance = column.resistance_m2K_per_W.copy()
     resistance[0] += rig.contact.resistance_m2K_per_W

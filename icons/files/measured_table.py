@@ -25,7 +25,7 @@ CLOCK_CURE = "write times as seconds from any start, or as 2026-03-02 23:59:58.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Measured:
+class MeasuredTable:
     """Times (rows,) in s that do not fall, columns (rows,) with NaN in gaps, the line of each row, and notes."""
 
     time_s: Array
@@ -50,7 +50,7 @@ def missing(table: Table, name: str, what: str) -> InputError:
 
 def measured(
     table: Table, names: Sequence[str], cure: str, *, gaps: bool = True, steps: bool = False, ours: bool = False
-) -> Measured:  # fmt: skip
+) -> MeasuredTable:  # fmt: skip
     """Return times and the columns called ``names``, in SI units; raises faults of the table with their cures.
 
     Without ``gaps`` an empty cell is a fault, with this ``cure``, and rows with an error value are left out; with
@@ -100,7 +100,7 @@ def measured(
     if not ours and (like := like_units_of_time(time)):
         what = f"time_s goes in steps of {np.median(np.diff(time)):g} over {time[-1] - time[0]:g}, read as s"
         notes.append(f"{what}: these look like {like[0]}; if they are, {like[1]} to have s")
-    return Measured(time, columns, tuple(lines.tolist()), tuple(notes))
+    return MeasuredTable(time, columns, tuple(lines.tolist()), tuple(notes))
 
 
 def _times(table: Table) -> Array:

@@ -20,7 +20,7 @@ from ..model.words import CONTROLS, nearest
 from .bodies import IconDraft, icon_draft
 from .build import Builder, Place, span
 from .recover import DEEPEST, read
-from .source import Edit, Finding, Source
+from .source import Finding, Patch, Source
 
 Body = tuple[Statement, ...]
 # Of all icons of a file, written out: two of the longest.
@@ -93,7 +93,7 @@ class _Assembler:
             number = part.children[0]
             if str(number) != "1":
                 what = f"this is version 1 of the language, not {str(number)[:20]}"
-                self.builder.add("E010", span(number), what, help, Edit(*span(number), "1"))
+                self.builder.add("E010", span(number), what, help, Patch(*span(number), "1"))
             if place:
                 line, _ = self.source.place(span(found[0])[0])
                 self.builder.add("E213", span(part), f"the version is already on line {line}", "keep the first")
@@ -104,7 +104,7 @@ class _Assembler:
             line = self.source.starts[self.source.place(first)[0] - 1]
             end = line + len(self.source.lines[self.source.place(first)[0] - 1])
             what = "the version of the language is missing before this"
-            self.builder.add("E009", (first, end), what, help, Edit(0, 0, "cue 1\n"))
+            self.builder.add("E009", (first, end), what, help, Patch(0, 0, "cue 1\n"))
 
     def set_block(self, parts: list[Any], kinds: list[str]) -> None:
         first: Any = None
@@ -167,14 +167,14 @@ class _Assembler:
             elif mark and draft.over is not None:
                 what = f'"{draft.name}" is a name for a member of a family'
                 self.builder.add(
-                    "E113", draft.place, what, "a family has a name without underscores", Edit(*draft.place, head)
+                    "E113", draft.place, what, "a family has a name without underscores", Patch(*draft.place, head)
                 )
             if draft.name in first:
                 line, _ = self.source.place(first[draft.name][0])
                 free = next(name for n in range(2, 10**6) if (name := f"{draft.name}-{n}") not in first)
                 what = f"line {line} has an icon of this name already"
                 self.builder.add(
-                    "E211", draft.place, what, "each icon needs a different name", Edit(*draft.place, free)
+                    "E211", draft.place, what, "each icon needs a different name", Patch(*draft.place, free)
                 )
             first.setdefault(draft.name, draft.place)
 
@@ -194,7 +194,7 @@ class _Assembler:
         if known is None:
             few = len(self.builder.findings) < MOST_ERRORS  # beyond, errors are only counted
             close = nearest(name, list(self.index)) if few else None
-            cures = (Edit(*place, close),) if close else ()
+            cures = (Patch(*place, close),) if close else ()
             self.builder.add(
                 "E230", place, f'no icon is called "{name[:60]}"', "play names an icon of this file", *cures
             )
@@ -219,7 +219,7 @@ class _Assembler:
         member = found.find(name) if values else None
         if member is None:
             what = f"{known} is a family of {len(found):,} icons" + (", but this is not one of them" if values else "")
-            cures = (Edit(*place, found[0].name),)
+            cures = (Patch(*place, found[0].name),)
             self.builder.add("E230", place, what, f"play one of its members, such as {found[0].name}", *cures)
         return member
 
@@ -307,10 +307,8 @@ class _Assembler:
             if isinstance(part, Repeat):
                 self.returns(part.body)
             elif isinstance(part, Return) and (place := self.builder.places[id(part)].get(wrong)):
-                what = f"this set controls the {self.control}"
-                self.builder.add(
-                    "E210", place, what, f'a rate in {right}, such as "return at 1 {right}"', Edit(*place, f"1 {right}")
-                )
+                what, cure = f"this set controls the {self.control}", Patch(*place, f"1 {right}")
+                self.builder.add("E210", place, what, f'a rate in {right}, such as "return at 1 {right}"', cure)
 
     def return_slots(self, draft: IconDraft) -> None:
         wrong, right = ("rate", "A/s") if self.control == "current" else ("current_rate", "°C/s")
@@ -326,7 +324,7 @@ class _Assembler:
         if places is None:
             return
         place = places.get(problem.part, places.get("whole", draft.place))
-        cures = tuple(Edit(*places[part], text) for part, text in problem.cures if part in places)
+        cures = tuple(Patch(*places[part], text) for part, text in problem.cures if part in places)
         self.builder.add(problem.code, place, problem.what, problem.help, *cures)
 
 

@@ -31,7 +31,7 @@ from ..model.units import MOST_REPEATS, UNITS, Kind
 from ..model.words import nearest
 from .build import Builder, FamilyParameters, Place, parameters_of, rule_of, span
 from .failed_statement import short
-from .source import Edit
+from .source import Patch
 
 _USES: dict[str, tuple[Kind, ...]] = {
     "by_use": ("change", "current"),
@@ -166,7 +166,7 @@ class _Scope:
             token = next(child for child in tree.children if getattr(child, "type", "") == "START")
             other = {"warm": "up", "cool": "down", "up": "warm", "down": "cool"}[str(token)]
             what = f'"{token}" is not a way to start a wave in {"A" if by_A is not None else "°C"}'
-            self.builder.add("E210", span(token), what, f'"{up}" or "{down}"', Edit(*span(token), other))
+            self.builder.add("E210", span(token), what, f'"{up}" or "{down}"', Patch(*span(token), other))
             return None
         at = self.builder.at(span(tree))
         shape = cast(Shape, words["SHAPE"])
@@ -270,7 +270,7 @@ class _Scope:
                 start = span(token)[0] + str(token).find(f"{{{hole}}}")
                 close = nearest(hole, list(over.named)) or (next(iter(over.named)) if len(over.named) == 1 else None)
                 place = (start, start + len(hole) + 2)
-                cures = (Edit(*place, f"{{{close}}}"),) if close else ()
+                cures = (Patch(*place, f"{{{close}}}"),) if close else ()
                 self.builder.add("E226", place, f'"{short(hole)}" is not a parameter', help, *cures)
 
 

@@ -13,7 +13,7 @@ from ..model.units import UNITS, Kind, exact_number, fault, to_si
 from ..model.words import EXAMPLES, nearest
 from .diagnose_family import THREE_DOTS
 from .failed_statement import short
-from .source import Edit, Finding, Source
+from .source import Finding, Patch, Source
 
 Place = tuple[int, int]
 _KINDS: dict[str, Kind] = {"signed": "change", "period": "time", "current_change": "current"}
@@ -65,7 +65,7 @@ class Builder:
         if found:
             positive = str(number).lstrip("-−")
             signed = ("absolute", "change", "current")
-            cures = (Edit(*span(number), positive),) if value < 0 and kind not in signed else ()
+            cures = (Patch(*span(number), positive),) if value < 0 and kind not in signed else ()
             if wave and kind == "difference" and found[0] == "E202":
                 found = "E202", "an amplitude is positive"
                 help = 'a wave goes both ways; to begin downwards, add "starting cool"'
@@ -104,7 +104,7 @@ class Builder:
                 if inner[index] not in _ESCAPES:
                     place = (start + index, start + index + 2)
                     help = 'in a text, \\" \\\\ and \\n stand for a quotation mark, a backslash and a new line'
-                    self.add("E112", place, f'"\\{inner[index]}" means nothing', help, Edit(place[0], place[0], "\\"))
+                    self.add("E112", place, f'"\\{inner[index]}" means nothing', help, Patch(place[0], place[0], "\\"))
                     return None
                 char = _ESCAPES[inner[index]]
             out.append(char)
@@ -122,7 +122,7 @@ class Builder:
         if str(token) in options:
             return str(token)
         close = nearest(str(token), options)
-        cures = (Edit(*span(token), close),) if close else ()
+        cures = (Patch(*span(token), close),) if close else ()
         self.add(code, span(token), f'"{short(token)}" is not {noun}', f"one of: {', '.join(options)}", *cures)
         return None
 
@@ -130,7 +130,7 @@ class Builder:
         """Return line and column of a place."""
         return self.source.place(place[0])
 
-    def add(self, code: str, place: Place, what: str, help: str = "", *cures: Edit) -> None:
+    def add(self, code: str, place: Place, what: str, help: str = "", *cures: Patch) -> None:
         """Add a finding."""
         self.findings.append(Finding(code, place[0], place[1], what, help, cures))
 
@@ -200,7 +200,7 @@ def _parameter(builder: Builder, tree: Any) -> Parameter | None:
         if wrong := span_fault(low, high, step):
             swapped = low > high and not span_fault(high, low, step)
             text = [builder.source.text[slice(*span(number))] for number in values.children]
-            cures = (Edit(*span(values), f"{text[1]}..{text[0]} step {text[2]}"),) if swapped else ()
+            cures = (Patch(*span(values), f"{text[1]}..{text[0]} step {text[2]}"),) if swapped else ()
             builder.add(
                 "E228", span(values), wrong, "a range runs from low to high in whole steps: 1..3 step 0.5", *cures
             )
@@ -210,7 +210,7 @@ def _parameter(builder: Builder, tree: Any) -> Parameter | None:
     for place, number in enumerate(known):
         if number in seen:
             here = span(values.children[place])
-            cure = Edit(span(values.children[place - 1])[1], here[1], "")
+            cure = Patch(span(values.children[place - 1])[1], here[1], "")
             what = f"{short(values.children[place])} is already in this list"
             builder.add("E213", here, what, "keep one of them", cure)
             return None

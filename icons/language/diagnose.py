@@ -8,7 +8,7 @@ from .diagnose_family import family
 from .diagnose_number import not_a_number, notation, unit
 from .diagnose_word import connective, extra, joined, pace, peaks, unit_twice, word
 from .failed_statement import FailedStatement, at, short, signed, swap
-from .source import Edit, Finding
+from .source import Finding, Patch
 
 _CURLY = re.compile(r"[”“»«’‘'](?!\w)")
 _NAME_HELP = "a name has letters, digits and hyphens and begins with a letter, such as cooling-step"
@@ -43,7 +43,7 @@ def not_yet(case: FailedStatement) -> Finding | None:
         what = "baseline is not a target in this version"
         if case.first == "step":
             return at(bad, "E120", what, "write the level itself, such as: step to 32 °C")
-        return at(bad, "E120", what, "write: return at 3 °C/s", Edit(case.pieces[0].start, bad.end, "return"))
+        return at(bad, "E120", what, "write: return at 3 °C/s", Patch(case.pieces[0].start, bad.end, "return"))
     return None
 
 
@@ -66,7 +66,7 @@ def comment(case: FailedStatement) -> Finding | None:
     mark = bad.text + (rest[0].text if rest and rest[0].start == bad.end else "")
     if mark not in ("//", "--", "/*", "/**"):
         return None
-    cure = Edit(bad.start, rest[0].end, "#")
+    cure = Patch(bad.start, rest[0].end, "#")
     return Finding("E105", bad.start, rest[0].end, f'a comment begins with "#", not with "{mark}"', "", (cure,))
 
 
@@ -75,12 +75,12 @@ def text(case: FailedStatement) -> Finding | None:
     bad = case.bad
     if bad.kind == "text" and (len(bad.text) < 2 or not bad.text.endswith('"') or bad.text.endswith('\\"')):
         # A curly mark closes where no letter follows: an apostrophe has one.
-        curly = [Edit(bad.start + found.start(), bad.start + found.end(), '"') for found in _CURLY.finditer(bad.text)]
-        cures: tuple[Edit, ...] = (Edit(bad.end, bad.end, '"'),)
+        curly = [Patch(bad.start + found.start(), bad.start + found.end(), '"') for found in _CURLY.finditer(bad.text)]
+        cures: tuple[Patch, ...] = (Patch(bad.end, bad.end, '"'),)
         stripped = bad.text.rstrip()
         if stripped.endswith("{"):
             inner = stripped[:-1].rstrip()
-            cures = (Edit(bad.start + len(inner), bad.end, '" {'), *cures)
+            cures = (Patch(bad.start + len(inner), bad.end, '" {'), *cures)
         cures = (*curly[:2], *cures)
         return at(
             bad, "E111", "this text has no closing quotation mark", 'a text is on one line, between "..."', *cures
@@ -130,7 +130,7 @@ def block(case: FailedStatement) -> Finding | None:
     last = case.pieces[-1] if case.pieces else bad
     if bad.kind == "end" or bad.text in VOCABULARY["icon"] or bad.text in VOCABULARY["set"]:
         here = case.before or last
-        cure = Edit(here.end, here.end, " {")
+        cure = Patch(here.end, here.end, " {")
         cause, hint = 'no "{" opens the block after this', 'statements are written in "{ ... }"'
         return Finding("E114", here.start, here.end, cause, hint, (cure,))
     if case.first == "repeat":
@@ -138,7 +138,7 @@ def block(case: FailedStatement) -> Finding | None:
         return at(bad, "E114", 'a "{" is needed here', "for example: repeat 3 { ... }", *cures)
     texted = any(piece.kind == "text" for piece in case.rest[:1])
     if bad.kind == "word" and case.index == 2 and case.first == "icon" and not texted:
-        joined = Edit(case.pieces[1].end, bad.end, "-" + bad.text)
+        joined = Patch(case.pieces[1].end, bad.end, "-" + bad.text)
         return at(bad, "E113", "a name must not contain spaces", "join its parts with hyphens", joined)
     if bad.kind == "word" and "KEY" in case.accepts and (close := nearest(bad.text, VOCABULARY["header"])):
         return at(bad, "E101", f'"{bad.text}" is not a key', _keys(), swap(bad, close))

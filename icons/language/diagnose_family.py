@@ -3,7 +3,7 @@
 from ..model.units import UNITS
 from ..model.words import VOCABULARY, nearest_unit
 from .failed_statement import FailedStatement, at, short, signed, swap
-from .source import Edit, Finding, Piece
+from .source import Finding, Patch, Piece
 
 _ALL_UNITS = tuple(dict.fromkeys(unit for units in UNITS.values() for unit in units if unit))
 _HELP = 'values are a list, "amount in [-3, 3] °C", or a range, "amount in 1..3 step 0.5 °C"'
@@ -40,12 +40,12 @@ def _around(case: FailedStatement) -> Finding | None:
 def _name(case: FailedStatement) -> Finding:
     bad, before = case.bad, case.before
     if bad.text in _ALL_UNITS and before is not None and before.text == ",":
-        return at(bad, "E118", _NO_COMMA, _HELP, Edit(before.start, bad.end, " " + bad.text))
+        return at(bad, "E118", _NO_COMMA, _HELP, Patch(before.start, bad.end, " " + bad.text))
     if bad.text == ")" and before is not None:
         what = "there is no parameter between the parentheses" if before.text == "(" else "no parameter follows"
-        return at(bad, "E118", what, _HELP, Edit(before.start, bad.end, "" if before.text == "(" else ")"))
+        return at(bad, "E118", what, _HELP, Patch(before.start, bad.end, "" if before.text == "(" else ")"))
     if bad.text == "," and before is not None:
-        return at(bad, "E118", "there is a comma too many", _HELP, Edit(before.end, bad.end, ""))
+        return at(bad, "E118", "there is a comma too many", _HELP, Patch(before.end, bad.end, ""))
     if bad.kind == "end" or bad.text == "in":
         return at(bad, "E113", "the name of a parameter is missing here", _NAME_HELP)
     plain = "".join(char if char.isalnum() else "-" for char in bad.text).strip("-")
@@ -58,18 +58,18 @@ def _in(case: FailedStatement) -> Finding:
     if before is not None and before.text == "in":
         return at(before, "E113", "the name of a parameter is missing here", _NAME_HELP)
     if before is not None and before.text in _ALL_UNITS and bad.text in (")", ",", ""):
-        cure = Edit(case.pieces[case.index - 2].start, before.end, " " + before.text)
+        cure = Patch(case.pieces[case.index - 2].start, before.end, " " + before.text)
         return at(before, "E118", _NO_COMMA, _HELP, cure)
     if bad.kind == "word" and before is not None:
         if case.next() == "in":
-            joined = Edit(before.end, bad.end, "-" + bad.text)
+            joined = Patch(before.end, bad.end, "-" + bad.text)
             return at(bad, "E113", "a name must not contain spaces", "join its parts with hyphens", joined)
         return at(bad, "E118", f'"in" is needed, not "{short(bad.text)}"', _HELP, swap(bad, "in"))
     if bad.text in ("=", ":", "∈"):
         touching = before is not None and before.end == bad.start
         return at(bad, "E118", f'"in" is needed, not "{bad.text}"', _HELP, swap(bad, " in" if touching else "in"))
     what = '"in" is missing before the values' if bad.kind == "number" or bad.text in "[({" else "values are missing"
-    cures = (Edit(bad.start, bad.start, "in "),) if bad.text else ()
+    cures = (Patch(bad.start, bad.start, "in "),) if bad.text else ()
     return at(bad, "E118", what, _HELP, *cures)
 
 
@@ -80,10 +80,10 @@ def _values(case: FailedStatement) -> Finding:
         return found
     if bad.text in ("(", "{", "<"):
         numbers = _run(case, case.index + 1)
-        cures = [Edit(bad.start, numbers[-1].end, f"[{_listed(numbers)}]")] if numbers else []
+        cures = [Patch(bad.start, numbers[-1].end, f"[{_listed(numbers)}]")] if numbers else []
         close = case.index + 1 + len(numbers)
         if cures and close < len(case.pieces) and case.pieces[close].text in (")", *_CLOSERS):
-            cures = [Edit(bad.start, case.pieces[close].end, f"[{_listed(numbers)}]")]
+            cures = [Patch(bad.start, case.pieces[close].end, f"[{_listed(numbers)}]")]
         return at(bad, "E118", f'a list of values is written in "[ ... ]", not in "{bad.text}"', _HELP, *cures)
     what = (
         "the values are missing" if bad.text in (")", ",", "") else f'"{short(bad.text)}" is neither a list nor a range'
@@ -97,7 +97,7 @@ def _dots(case: FailedStatement) -> Finding:
     numbers = _run(case, case.index - 1)
     if bad.text in ("to", "…", "-", "–", "until", ":") and case.rest and case.rest[0].kind == "number":
         start = before.end if before is not None else bad.start
-        cure = Edit(start, case.rest[0].start, "..")
+        cure = Patch(start, case.rest[0].start, "..")
         return at(bad, "E118", f'a range has ".." between its ends, not "{bad.text}"', _HELP, cure)
     if before is None or not numbers:
         return at(bad, "E118", "a list of values has brackets", _HELP)
@@ -119,7 +119,7 @@ def _step(case: FailedStatement) -> Finding:
     except ValueError:
         size = 0.0
     step = "1" if size == int(size) else f"{size:.6g}"
-    cures = (Edit(high.end, high.end, f" step {step}"),) if size > 0 else ()
+    cures = (Patch(high.end, high.end, f" step {step}"),) if size > 0 else ()
     return at(whole, "E118", 'this range has no "step"', _HELP, *cures)
 
 
@@ -133,20 +133,20 @@ def _more(case: FailedStatement) -> Finding:
         dots = THREE_DOTS if case.next().startswith(".") else 'a range has no brackets: "1..3 step 0.5 °C"'
         return at(bad, "E118", dots, _HELP)
     numbers = _run(case, first + 1)
-    whole = Edit(case.pieces[first].start, numbers[-1].end, f"[{_listed(numbers)}")
+    whole = Patch(case.pieces[first].start, numbers[-1].end, f"[{_listed(numbers)}")
     if bad.kind == "number":
         return at(bad, "E118", "a comma is missing between these values", _HELP, whole)
     if bad.text in (")", *_CLOSERS):
         return at(bad, "E118", f'a list ends with "]", not with "{bad.text}"', _HELP, *_closed(case))
     before = case.pieces[case.index - 1]
     what = f'"]" is missing before "{short(bad.text)}"' if bad.text else '"]" is missing here'
-    return at(bad, "E118", what, _HELP, Edit(before.end, before.end, "]"))
+    return at(bad, "E118", what, _HELP, Patch(before.end, before.end, "]"))
 
 
-def _closed(case: FailedStatement) -> tuple[Edit, ...]:
+def _closed(case: FailedStatement) -> tuple[Patch, ...]:
     # ")" closes the list by mistake, or the list is open and ")" closes the parentheses.
     bad, before = case.bad, case.pieces[case.index - 1]
-    return (swap(bad, "]"), Edit(before.end, before.end, "]")) if bad.text == ")" else (swap(bad, "]"),)
+    return (swap(bad, "]"), Patch(before.end, before.end, "]")) if bad.text == ")" else (swap(bad, "]"),)
 
 
 def _unit_inside(case: FailedStatement, first: int) -> Finding:
@@ -156,7 +156,7 @@ def _unit_inside(case: FailedStatement, first: int) -> Finding:
     units = {piece.text for piece in inside if piece.text in _ALL_UNITS}
     behind = close + 1 < len(case.pieces) and case.pieces[close + 1].text in units
     text = f"[{_listed(inside)}]" + ("" if behind else f" {bad.text}")
-    cures = (Edit(case.pieces[first].start, case.pieces[close].end, text),) if len(units) == 1 else ()
+    cures = (Patch(case.pieces[first].start, case.pieces[close].end, text),) if len(units) == 1 else ()
     return at(bad, "E118", "the unit comes once, after the list", "for example: amount in [1, 2] °C", *cures)
 
 
@@ -165,7 +165,7 @@ def _number(case: FailedStatement) -> Finding:
     if bad.text == "]" and before is not None:
         if before.text == "[":
             return at(bad, "E118", "this list is empty", _HELP)
-        return at(bad, "E118", "a value is missing after the comma", _HELP, Edit(before.start, bad.start, ""))
+        return at(bad, "E118", "a value is missing after the comma", _HELP, Patch(before.start, bad.start, ""))
     if found := signed(case):
         return found
     what = f'a number is needed, not "{short(bad.text)}"' if bad.text else "a number is missing here"
@@ -177,7 +177,7 @@ def _end(case: FailedStatement) -> Finding:
     bad, before = case.bad, case.before
     end = before.end if before is not None else bad.start
     if bad.kind == "word" and case.next() in ("in", "=") and case.index + 1 < len(case.pieces):
-        return at(bad, "E118", "a comma is missing before this parameter", _HELP, Edit(end, end, ","))
+        return at(bad, "E118", "a comma is missing before this parameter", _HELP, Patch(end, end, ","))
     if "UNIT" in case.accepts and bad.kind in ("word", "other") and bad.text not in _OPENERS + _CLOSERS:
         kinds = [close for kind in UNITS if kind != "count" and (close := nearest_unit(bad.text, kind))]
         cures = tuple(swap(bad, close) for close in dict.fromkeys(kinds))
@@ -188,7 +188,7 @@ def _end(case: FailedStatement) -> Finding:
     if bad.text == ",":
         return at(bad, "E118", "the comma belongs at the end of the line before", _HELP)
     what = f'")" or "," is needed, not "{short(bad.text)}"' if bad.text else '")" is missing after the parameters'
-    separate = ((swap(bad, ","),) if bad.text in (";", "and") else ()) + (Edit(end, end, ")"),)
+    separate = ((swap(bad, ","),) if bad.text in (";", "and") else ()) + (Patch(end, end, ")"),)
     here = bad
     if not bad.text or bad.text in VOCABULARY["header"] or bad.text in VOCABULARY["icon"]:
         what, here = '")" is missing after the parameters', Piece("end", "", max(0, end - 1), end)

@@ -17,7 +17,7 @@ from ..model.words import (
     unit_kinds,
 )
 from .failed_statement import FailedStatement, at, short, signed, swap
-from .source import Edit, Finding, Piece
+from .source import Finding, Patch, Piece
 
 _UNIT_KINDS: dict[str, Kind] = {kind.upper(): kind for kind in UNITS if kind not in ("change", "count")}
 _CONNECTIVES = ("at", "over", "by", "to", "for", "every", "starting", "cut")
@@ -48,9 +48,9 @@ def notation(case: FailedStatement) -> Finding | None:
     what, help = "there is no arithmetic", "write the value itself, as one number"
     if sign == ":":
         what, help = "there is no clock notation", 'a time is one number with its unit, such as "90 s"'
-    cures: tuple[Edit, ...] = ()
+    cures: tuple[Patch, ...] = ()
     if sign == "/" and (value := _fraction(pieces)):
-        cures = (Edit(pieces[0].start, pieces[2].end, value),)
+        cures = (Patch(pieces[0].start, pieces[2].end, value),)
     return Finding("E106", pieces[0].start, pieces[-1].end, f'"{short(text)}" is not a number: {what}', help, cures)
 
 
@@ -82,10 +82,10 @@ def unit(case: FailedStatement) -> Finding | None:
     touching = bad.start == number.end
     if re.fullmatch(r"[0-9]{3}", bad.text) and re.fullmatch(r"[+\-−]?[0-9]{1,3}", number.text):
         what = f'there is a space within the number "{number.text} {bad.text}"'
-        cure = Edit(number.end, bad.start, "")
+        cure = Patch(number.end, bad.start, "")
         return Finding("E106", number.start, bad.end, what, "write digits without spaces between them", (cure,))
     if bad.kind not in ("word", "other") or bad.text in _CONNECTIVES:
-        cure = Edit(number.end, number.end, " " + next(iter(UNITS[kind])))
+        cure = Patch(number.end, number.end, " " + next(iter(UNITS[kind])))
         shared = bad.kind == "number" and case.next() in UNITS[kind]  # two numbers, one unit: which was meant?
         return at(number, "E102", "this number has no unit", EXAMPLES[kind], *(() if shared else (cure,)))
     if bad.text in (case.names or ()):
@@ -96,11 +96,11 @@ def unit(case: FailedStatement) -> Finding | None:
     others = [other for other in unit_kinds(bad.text) if other not in kinds]
     if case.first == "to" and kind == "current" and "absolute" in others:
         word = case.pieces[0]
-        heads = tuple(Edit(word.start, word.start, text) for text in ("cool ", "warm "))
+        heads = tuple(Patch(word.start, word.start, text) for text in ("cool ", "warm "))
         help = 'temperatures take a direction: "cool to 26 °C at 3 °C/s"'
         return Finding("E209", word.start, word.end, '"to" alone moves a current', help, heads)
     if bad.text in _DEGREES and re.fullmatch(r"[Cc](/.*)?", case.next()):
-        cure = Edit(bad.start, case.rest[0].end, "°C" + case.next()[1:])
+        cure = Patch(bad.start, case.rest[0].end, "°C" + case.next()[1:])
         whole = Piece("word", f"{bad.text} {case.next()}", bad.start, case.rest[0].end)
         return at(
             whole, "E103", f'"{whole.text}" is not a unit', 'a unit must not contain spaces: "°C" or "degC"', cure
@@ -113,7 +113,7 @@ def unit(case: FailedStatement) -> Finding | None:
         return found
     if size := scaled(number.text, bad.text, kind):
         help = f"{KIND_WORDS[kind]} is in one of: {', '.join(UNITS[kind])}"
-        cure = Edit(number.start, bad.end, size)
+        cure = Patch(number.start, bad.end, size)
         return at(bad, "E103", f'"{short(bad.text)}" is not a unit', help, cure)
     close = nearest_unit(bad.text, kind)
     pad = "" if touching or bad.start > number.end else " "
@@ -136,7 +136,7 @@ def _wrong_kind(case: FailedStatement, kind: Kind, others: list[Kind]) -> Findin
     if kind in ("rate", "current_rate") and case.next() in ("/", "per"):
         per = nearest_unit(case.next(2), "time") if case.next(2) else None
         whole = f"{bad.text}/{per}"
-        cures = (Edit(bad.start, case.rest[1].end, whole),) if per and whole in UNITS[kind] else ()
+        cures = (Patch(bad.start, case.rest[1].end, whole),) if per and whole in UNITS[kind] else ()
         return at(bad, "E104", what, EXAMPLES[kind], *cures)
     similar = [text for text in (bad.text + "/s", bad.text.split("/")[0]) if text in UNITS[kind]]
     return at(bad, "E104", what, help, *(swap(bad, text) for text in similar[:1]))
@@ -148,12 +148,12 @@ def _periods(case: FailedStatement) -> Finding | None:
     if case.first not in WAVES or number is None or not 0 < number[0] < 1e9:
         return None
     if bad.text.casefold() in ("hz", "hertz"):
-        cure = Edit(case.pieces[case.index - 1].start, bad.end, f"{1 / number[0]:.6g} s")
+        cure = Patch(case.pieces[case.index - 1].start, bad.end, f"{1 / number[0]:.6g} s")
         return at(bad, "E103", f'"{bad.text}" is not a unit', "a wave has a period, such as: every 4 s", cure)
     every = case.find("every")
     period = case.quantity(every + 1) if every is not None else None
     if bad.text in _PERIODS and period is not None:
-        cure = Edit(case.pieces[case.index - 1].start, bad.end, f"{number[0] * period[0]:.6g} {period[1]}")
+        cure = Patch(case.pieces[case.index - 1].start, bad.end, f"{number[0] * period[0]:.6g} {period[1]}")
         return at(bad, "E103", f'"{bad.text}" is not a unit', "a wave lasts a time, such as: for 12 s", cure)
     return None
 
@@ -191,7 +191,7 @@ def not_a_number(case: FailedStatement) -> Finding | None:
     if case.first == "cue":
         cures = [swap(bad, "1")]
     elif case.rest and case.rest[0].kind == "number" and not cures and case.idle([bad]):
-        cures = [Edit(bad.start, case.rest[0].start, "")]
+        cures = [Patch(bad.start, case.rest[0].start, "")]
     wanted = "current" if case.first == "to" and case.index == 1 else _WANTED.get(case.pieces[case.index - 1].text, "")
     help = EXAMPLES.get(wanted, "numbers look like 6, 0.5 or 1e-3, each with its unit")
     return at(bad, "E106", what, help, *cures)
@@ -208,4 +208,4 @@ def _bound(case: FailedStatement) -> Finding | None:
         return None
     what = f'"at" is missing before "{text}"' if text in ("most", "least") else f'"{text}" does not fit here'
     help = 'write "total 10 s", "total at most 10 s" or "total at least 10 s"'
-    return Finding("E116", bad.start, last.end, what, help, (Edit(bad.start, last.end, meant),))
+    return Finding("E116", bad.start, last.end, what, help, (Patch(bad.start, last.end, meant),))

@@ -6,7 +6,7 @@ import re
 from ..model.units import UNITS, decimal_text, exact_number
 from ..model.words import EXAMPLES, JOINERS, LACKING, STARTS, VOCABULARY, WAVES, nearest, unit_kinds
 from .failed_statement import FailedStatement, at, either, short, swap
-from .source import Edit, Finding
+from .source import Finding, Patch
 
 _CONNECTIVES = {"AT": "at", "OVER": "over", "BY": "by", "TO": "to", "FOR": "for", "EVERY": "every"}
 _TAKES = {"at": "rate", "by": "difference", "to": "absolute"}
@@ -22,7 +22,7 @@ def word(case: FailedStatement) -> Finding | None:
     if "MOST" in case.accepts:
         words, help = ["most", "least"], EXAMPLES["total"]
         close = nearest(bad.text, words)
-        cures = [swap(bad, close)] if close else [Edit(case.pieces[1].start, bad.start, "")]
+        cures = [swap(bad, close)] if close else [Patch(case.pieces[1].start, bad.start, "")]
     elif "START" in case.accepts:
         ampere = any("current" in unit_kinds(piece.text) for piece in case.pieces[2:5])
         words, help = ["up", "down"] if ampere else ["warm", "cool"], "a wave starts upwards or downwards"
@@ -31,7 +31,7 @@ def word(case: FailedStatement) -> Finding | None:
     else:
         return None
     if bad.kind == "end":
-        cure = Edit(bad.end, bad.end, f" {words[0]}")
+        cure = Patch(bad.end, bad.end, f" {words[0]}")
         return Finding("E116", case.pieces[0].start, bad.end, f"{either(words)} is missing", help, (cure,))
     return at(bad, "E116", f'{either(words)} is needed, not "{short(bad.text)}"', help, *cures)
 
@@ -44,7 +44,7 @@ def joined(case: FailedStatement) -> Finding | None:
     behind = _statement_behind(case)
     if behind is None or case.where not in ("icon", "repeat"):
         return None
-    cure = Edit(before.end, behind, "; ")
+    cure = Patch(before.end, behind, "; ")
     return at(bad, "E108", f'"{bad.text}" joins no statements', 'put ";" or a new line between them', cure)
 
 
@@ -71,7 +71,7 @@ def _two_times(case: FailedStatement) -> Finding | None:
         value = sum(exact_number(case.pieces[n].text) * times[case.pieces[n + 1].text] for n in (case.index - 2, place))
     except ValueError:
         return None
-    cure = Edit(begin.start, end.end, f"{decimal_text(float(value / times[second[1]]))} {second[1]}")
+    cure = Patch(begin.start, end.end, f"{decimal_text(float(value / times[second[1]]))} {second[1]}")
     return Finding("E108", begin.start, end.end, "a time is one number with one unit", EXAMPLES["time"], (cure,))
 
 
@@ -83,12 +83,12 @@ def extra(case: FailedStatement) -> Finding | None:
     if case.first in ("site", "control"):
         what = f'"{short(bad.text)}" is too much: {case.first} takes one name'
         help = "a name must not contain spaces; join its parts with hyphens"
-        return at(bad, "E108", what, help, Edit(before.end, bad.start, "-"))
+        return at(bad, "E108", what, help, Patch(before.end, bad.start, "-"))
     own = {"play": _behind_play, "step": _behind_step, **dict.fromkeys(WAVES, _behind_wave)}.get(case.first)
     if own is not None and (found := own(case)):
         return found
     if bad.text in VOCABULARY[case.where]:
-        cure = Edit(before.end, before.end, ";")
+        cure = Patch(before.end, before.end, ";")
         return at(bad, "E108", "a second statement begins here", 'put ";" or a new line between them', cure)
     if found := _two_times(case):
         return found
@@ -99,9 +99,9 @@ def extra(case: FailedStatement) -> Finding | None:
     # A suggestion leaves nothing out that was meant.
     rest = case.pieces[case.index :]
     kept = twice and len(rest) == 3 and _one_pace(case)
-    cures = (Edit(before.end, case.pieces[-1].end, ""),) if kept or case.idle(rest) else ()
+    cures = (Patch(before.end, case.pieces[-1].end, ""),) if kept or case.idle(rest) else ()
     if bad.text == "for" and case.first in ("cool", "warm", "change", "to", "return"):
-        cures = (Edit(before.end, bad.start, "; hold "),)
+        cures = (Patch(before.end, bad.start, "; hold "),)
     return at(bad, "E108", f'the statement is complete before "{short(bad.text)}"', help, *cures)
 
 
@@ -118,9 +118,9 @@ def _behind_play(case: FailedStatement) -> Finding | None:
     if bad.text in VOCABULARY[case.where]:
         return None
     if bad.kind == "word":
-        joined = Edit(name.end, bad.end, "-" + bad.text)
+        joined = Patch(name.end, bad.end, "-" + bad.text)
         return at(bad, "E113", "a name must not contain spaces", "join its parts with hyphens", joined)
-    count = Edit(case.pieces[0].start, case.pieces[-1].end, f"repeat {bad.text} {{ play {name.text} }}")
+    count = Patch(case.pieces[0].start, case.pieces[-1].end, f"repeat {bad.text} {{ play {name.text} }}")
     cures = (count,) if bad.kind == "number" else ()
     help = f"to play it several times: repeat 3 {{ play {short(name.text)} }}"
     return at(bad, "E108", f'the statement is complete before "{short(bad.text)}"', help, *cures)
@@ -132,7 +132,7 @@ def _behind_step(case: FailedStatement) -> Finding | None:
     if not pace and case.bad.text != "for":
         return None
     headed = second.text in ("warm", "cool")
-    change = Edit(first.start, second.start, "") if headed else swap(first, "change")
+    change = Patch(first.start, second.start, "") if headed else swap(first, "change")
     what = f'a step is as fast as the driver can: it takes no "{case.bad.text}"'
     help = 'with a rate or a time, write "change"; with a step back after it, write "pulse"'
     return at(case.bad, "E108", what, help, change if pace else swap(first, "pulse"))
@@ -142,12 +142,12 @@ def _behind_wave(case: FailedStatement) -> Finding | None:
     bad, last = case.bad, case.pieces[-1]
     if bad.text == "starting" and case.find("cut") == case.index - 1:
         behind = case.text_from(case.index)
-        cure = Edit(case.pieces[case.index - 1].start, last.end, f"{behind} cut")
+        cure = Patch(case.pieces[case.index - 1].start, last.end, f"{behind} cut")
         return at(bad, "E214", '"starting" comes before "cut"', EXAMPLES["sine"], cure)
     if bad.kind != "word" or "CUT" not in case.accepts or (bad.text in VOCABULARY[case.where] and case.next()):
         return None
     if bad.text.casefold() in STARTS and "STARTING" in case.accepts:
-        cure = Edit(bad.start, bad.start, "starting ")
+        cure = Patch(bad.start, bad.start, "starting ")
         return at(bad, "E116", f'"starting" is missing before "{bad.text}"', "a wave starts upwards or downwards", cure)
     if close := nearest(bad.text, ("starting", "cut")):
         help = 'a wave may end with "starting warm" or "starting cool", and with "cut"'
@@ -164,19 +164,19 @@ def pace(case: FailedStatement) -> Finding | None:
     rate = f"at {3 if unit == '°C/s' else 1} {unit}"
     help = f'how fast, such as "{rate}", or how long, such as "over 2 s"'
     if bad.kind == "end":
-        cure = Edit(bad.end, bad.end, f" {rate}")
+        cure = Patch(bad.end, bad.end, f" {rate}")
         return Finding("E107", pieces[0].start, bad.end, "the rate or the time is missing", help, (cure,))
     cures = []
     if bad.kind == "number":
-        cures = [Edit(bad.start, bad.start, "at "), Edit(bad.start, bad.start, "over ")]
+        cures = [Patch(bad.start, bad.start, "at "), Patch(bad.start, bad.start, "over ")]
     elif bad.kind == "word":
         close = _PACE_ALIASES.get(bad.text) or nearest(bad.text, ("at", "over"))
         if close and bad.text != "every":
             cures = [swap(bad, close)]
         elif (behind := _statement_behind(case)) is not None:
-            cures = [Edit(bad.start, behind, f"{rate}; ")]
+            cures = [Patch(bad.start, behind, f"{rate}; ")]
         elif case.idle(pieces[case.index :]):
-            cures = [Edit(bad.start, pieces[-1].end, rate)]
+            cures = [Patch(bad.start, pieces[-1].end, rate)]
     return at(bad, "E107", f'"at" or "over" is needed, not "{short(bad.text)}"', help, *cures)
 
 
@@ -195,7 +195,7 @@ def peaks(case: FailedStatement) -> Finding | None:
     if case.index < 4 or "EVERY" not in case.accepts or found is None or not size or abs(size[0]) > 1e9:
         return None
     begin, end = case.pieces[case.index - 2], case.pieces[case.index + found[0].count(" ")]
-    cure = Edit(begin.start, end.end, f"{decimal_text(size[0] / 2.0)} {size[1]}")
+    cure = Patch(begin.start, end.end, f"{decimal_text(size[0] / 2.0)} {size[1]}")
     said = "the size of a wave is its amplitude", LACKING["peak-to-peak"]
     return Finding("E116", case.bad.start, end.end, *said, (cure,))
 
@@ -209,7 +209,7 @@ def connective(case: FailedStatement) -> Finding | None:
     help = EXAMPLES.get(case.first, "")
     if bad.kind == "end":
         tail = _tail(case)
-        cures = [Edit(bad.end, bad.end, f" {tail}")] if tail else []
+        cures = [Patch(bad.end, bad.end, f" {tail}")] if tail else []
         return Finding("E116", case.pieces[0].start, bad.end, f"{either(words)} is missing", help, tuple(cures))
     return at(bad, "E116", f'{either(words)} is needed, not "{short(bad.text)}"', help, *_joined(case, words))
 
@@ -223,28 +223,28 @@ def _tail(case: FailedStatement) -> str:
     return _TAILS.get(case.first, "") if "FOR" in case.accepts else ""
 
 
-def _joined(case: FailedStatement, words: list[str]) -> list[Edit]:
+def _joined(case: FailedStatement, words: list[str]) -> list[Patch]:
     bad = case.bad
     cures = []
     if "EVERY" in case.accepts and bad.text == "for" and (time := case.quantity(case.index + 1)):
-        cures.append(Edit(bad.start, bad.start, f"every {time[0] / 4:.6g} {time[1]} "))
+        cures.append(Patch(bad.start, bad.start, f"every {time[0] / 4:.6g} {time[1]} "))
     if bad.text in ("warm", "cool") and case.first == "change":
-        cures.append(Edit(case.pieces[0].start, bad.start, ""))
+        cures.append(Patch(case.pieces[0].start, bad.start, ""))
     if bad.text in ("warm", "cool") and case.first in WAVES:
-        cures.append(Edit(bad.start, case.pieces[-1].end, f"{case.text_from(case.index + 1)} starting {bad.text}"))
+        cures.append(Patch(bad.start, case.pieces[-1].end, f"{case.text_from(case.index + 1)} starting {bad.text}"))
     if "DIRECTION" in case.accepts and (meant := STARTS.get(bad.text.casefold())):
         cures.append(swap(bad, meant))
     later = next((piece for piece in case.rest if piece.text in words), None)
     between = [piece for piece in case.rest if later is not None and piece.start < later.start]
     # Where a change begins need not be said; any other number must not get lost.
     if later is not None and (bad.text == "from" or case.idle([bad, *between])):
-        cures.append(Edit(bad.start, later.start, ""))
+        cures.append(Patch(bad.start, later.start, ""))
     quantity = case.quantity(case.index + (bad.kind != "number"))
     kinds = set(unit_kinds(quantity[1])) if quantity else set()
     words = [text for text in words if not kinds or kinds & {_TAKES.get(text, "time"), "current", "current_rate"}]
     words = ["to"] if bad.text == "at" and "to" in words else words
     if bad.kind == "number":
-        cures += [Edit(bad.start, bad.start, f"{text} ") for text in words]
+        cures += [Patch(bad.start, bad.start, f"{text} ") for text in words]
     elif bad.kind == "word":
         cures += [swap(bad, close)] if (close := nearest(bad.text, words)) else []
         if bad.text in ("at", "over", *_PACE_ALIASES) or case.idle([bad]):

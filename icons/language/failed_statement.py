@@ -5,7 +5,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
 from ..model.words import DASHES, FILLERS, STARTS
-from .source import Edit, Finding, Piece
+from .source import Finding, Patch, Piece
 
 _BOUNDS = "<>≤≥±"
 """Characters that are not idle."""
@@ -81,7 +81,7 @@ class FailedStatement:
         return " ".join(piece.text for piece in self.pieces[start:])
 
 
-def at(piece: Piece, code: str, what: str, help: str = "", *cures: Edit) -> Finding:
+def at(piece: Piece, code: str, what: str, help: str = "", *cures: Patch) -> Finding:
     """Return a finding under the whole of a piece."""
     return Finding(code, piece.start, max(piece.end, piece.start + 1), what, help, cures)
 
@@ -94,14 +94,14 @@ def signed(case: FailedStatement) -> Finding | None:
     what = f'"{bad.text}" (U+{ord(bad.text):04X}) is not a minus sign'
     if bad.text in "+-−":
         what = "there is a space between the sign and its number"
-    cure = Edit(bad.start, number.end, ("+" if bad.text == "+" else "-") + number.text)
+    cure = Patch(bad.start, number.end, ("+" if bad.text == "+" else "-") + number.text)
     help = 'a minus sign is a plain hyphen, "-", right before the digits'
     return Finding("E106", bad.start, number.end, what, help, (cure,))
 
 
-def swap(piece: Piece, text: str) -> Edit:
+def swap(piece: Piece, text: str) -> Patch:
     """Return the edit that puts a text in the place of a piece."""
-    return Edit(piece.start, piece.end, text)
+    return Patch(piece.start, piece.end, text)
 
 
 def short(text: object) -> str:

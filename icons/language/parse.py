@@ -5,7 +5,7 @@ from ..model.errors import MOST_ERRORS, CueError, CueErrors, whole_file
 from ..model.iconset import IconSet
 from .assemble import analyse
 from .recover import other_format
-from .source import Edit, Finding, Source, decode
+from .source import Finding, Patch, Source, decode
 
 # Suggestions cost a parse each; beyond this many characters read again, errors come without one.
 _TRIES = 150_000
@@ -97,5 +97,5 @@ class _Suggester:
         return None
 
 
-def _within(source: Source, cure: Edit, line: int) -> bool:
+def _within(source: Source, cure: Patch, line: int) -> bool:
     return source.place(cure.start)[0] == line and "\n" not in source.text[cure.start : cure.end]

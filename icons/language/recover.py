@@ -10,7 +10,7 @@ from ..model.errors import MOST_ERRORS, MOST_READ
 from ..model.words import VOCABULARY
 from .diagnose import diagnose
 from .failed_statement import FailedStatement
-from .source import Edit, Finding, Piece, Source, grammar
+from .source import Finding, Patch, Piece, Source, grammar
 
 if TYPE_CHECKING:
     from lark import Token, Tree
@@ -179,7 +179,7 @@ class _Reader:
         where = self.blocks[-1][0] if self.blocks else "file"
         if self.text[at] == "}" and not self.blocks:
             self.report(
-                Finding("E110", at, at + 1, "no block is open here", 'remove this "}"', (Edit(at, at + 1, ""),))
+                Finding("E110", at, at + 1, "no block is open here", 'remove this "}"', (Patch(at, at + 1, ""),))
             )
             self.jump(at + 1)
             return
@@ -210,7 +210,7 @@ class _Reader:
         braced = None if header or self.listing or closed else _BRACED.match(self.text, at)
         if braced and where in ("icon", "repeat"):
             help = "a parameter is written without braces in statements, and with braces in a text"
-            edit = Edit(at, braced.end(), braced[1])
+            edit = Patch(at, braced.end(), braced[1])
             self.report(Finding("E105", at, braced.end(), "braces are not allowed here", help, (edit,)))
             self.resume(self.stop(braced.end()), where)
             return

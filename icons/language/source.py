@@ -54,7 +54,7 @@ class Piece:
 
 
 @dataclass(frozen=True, slots=True)
-class Edit:
+class Patch:
     """A change to the source that may cure an error: put ``text`` where ``start`` to before ``end`` is now."""
 
     start: int
@@ -71,7 +71,7 @@ class Finding:
     end: int
     what: str
     help: str = ""
-    cures: tuple[Edit, ...] = ()
+    cures: tuple[Patch, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

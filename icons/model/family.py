@@ -9,7 +9,7 @@ from math import prod
 from ..drawn import Drawn
 from .context import Context, Metadata, name_fault
 from .icon import Icon, rest_level
-from .members import HOLE, Expander, Summary, check_family
+from .members import HOLE, Expander, Extremes, check_family
 from .parameter import Parameter, Slot, slot_fault
 from .statements import Statement
 
@@ -65,7 +65,7 @@ class Family(Drawn):
     context: Context = field(default_factory=Context)
     metadata: Metadata = field(default_factory=Metadata)
     _expander: Expander = field(init=False, compare=False, repr=False)
-    _checked: tuple[Fraction, Summary] = field(init=False, compare=False, repr=False)
+    _checked: tuple[Fraction, Extremes] = field(init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("parameters", "template"):
@@ -157,7 +157,7 @@ class Family(Drawn):
         drawn = sorted(random.Random(seed).sample(range(size), min(count, size)))
         return tuple(self[index] for index in drawn)
 
-    def summary(self, start: float | None = None) -> Summary:
+    def summary(self, start: float | None = None) -> Extremes:
         """Return durations, extremes and steepest rate over all members; ``start``, errors: see ``Icon.corners``."""
         rest, found = self._checked
         return found if rest_level(self.context, start) == rest else check_family(self._expander, self.context, start)

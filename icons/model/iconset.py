@@ -13,7 +13,7 @@ from .context import Context, Metadata, name_fault, text_fault
 from .family import Family
 from .format import set_text
 from .icon import Icon, content_hash, played_icons
-from .members import Summary
+from .members import Extremes
 from .units import quantity
 from .words import nearest
 
@@ -159,7 +159,7 @@ class IconSet(Drawn):
         """SHA-256 of the canonical text, as 64 hexadecimal digits: equal sets have equal hashes, everywhere."""
         return content_hash(str(self))
 
-    def summary(self, start: float | None = None) -> Summary:
+    def summary(self, start: float | None = None) -> Extremes:
         """Return durations, extremes and steepest rate over all icons; ``start`` as in ``Icon.corners``."""
         found = []
         for entry in self.entries:
@@ -167,8 +167,8 @@ class IconSet(Drawn):
                 found.append(entry.summary(start))
             else:
                 one = entry.corners(start)
-                found.append(Summary(one.duration_s, one.duration_s, one.lowest, one.highest, one.steepest_per_s))
-        return reduce(Summary.joined, found)
+                found.append(Extremes(one.duration_s, one.duration_s, one.lowest, one.highest, one.steepest_per_s))
+        return reduce(Extremes.joined, found)
 
     def __len__(self) -> int:
         return len(self.icons)

@@ -100,7 +100,7 @@ class Expander:
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
+class Extremes:
     """Over all members: durations (s), levels (°C or A) and the steepest rate (K/s or A/s) that is not a step."""
 
     shortest_s: float
@@ -109,9 +109,9 @@ class Summary:
     highest: float
     steepest_per_s: float
 
-    def joined(self, other: "Summary") -> "Summary":
+    def joined(self, other: "Extremes") -> "Extremes":
         """Return the summary of what two summaries cover."""
-        return Summary(
+        return Extremes(
             min(self.shortest_s, other.shortest_s),
             max(self.longest_s, other.longest_s),
             min(self.lowest, other.lowest),
@@ -142,10 +142,10 @@ class MemberErrors(CueErrors):
         return MemberErrors, (self.failed, self.context)
 
 
-def check_family(members: Expander, context: Context, start: float | None = None) -> Summary:
+def check_family(members: Expander, context: Context, start: float | None = None) -> Extremes:
     """The summary over all members from a baseline or ``start``; MemberErrors when one cannot be played."""
     rest = rest_level(context, start)
-    summary: Summary | None = None
+    summary: Extremes | None = None
     first: FailedMember | None = None
     failing = 0
     played: Played = {}
@@ -162,7 +162,7 @@ def check_family(members: Expander, context: Context, start: float | None = None
             if failing == MOST_FAILING:
                 break
         elif first is None:
-            one = Summary(course.duration_s, course.duration_s, course.lowest, course.highest, course.steepest_per_s)
+            one = Extremes(course.duration_s, course.duration_s, course.lowest, course.highest, course.steepest_per_s)
             summary = one if summary is None else summary.joined(one)
     if first is not None or summary is None:
         assert first is not None

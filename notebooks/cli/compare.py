@@ -13,7 +13,7 @@ from thermicon.icons.number_text import count_of, number
 from thermicon.perception.criteria import MOST_ICONS
 
 from ..files.outputs import check_separate
-from ..files.trace_files import Curves, LogError, align, curves_of, quantity, read_curves
+from ..files.trace_files import Curves, TraceFileError, align, curves_of, quantity, read_curves
 from ..messages import load_rig, note, progress_bar, usage
 from ..report.run_report import Comparison, compare_report, outcome_text
 from ..report.sets_report import sets_report
@@ -168,7 +168,7 @@ def _as_wholes(names: tuple[str, str], asked: RigOptions) -> list[Block]:
     sets = [read_set([name]) for name in names]
     for name, icons in zip(names, sets, strict=True):
         if not 2 <= len(icons) <= MOST_ICONS:
-            raise LogError(
+            raise TraceFileError(
                 f"{name} has {count_of(len(icons), 'icon')}; sets of 2 to {MOST_ICONS:,} icons are compared as a whole"
             )
     rig = asked.load(sets[0], names[0])
@@ -218,10 +218,10 @@ def _shifted(first: Curves, second: Curves) -> tuple[Curves, str]:
 
     common = [name for name in (*SHIFTED_BY, *first.columns) if name in first.columns and name in second.columns]
     if not common:
-        raise LogError(f"no column in both {first.name} and {second.name} to align them by")
+        raise TraceFileError(f"no column in both {first.name} and {second.name} to align them by")
     by = common[0]
     shift, alike = best_shift_s(first.time_s, first.columns[by], second.time_s, second.columns[by])
     if alike <= 0:
-        raise LogError(f"{second.name}: no shift makes its {by} like that of {first.name}; leave out --align")
+        raise TraceFileError(f"{second.name}: no shift makes its {by} like that of {first.name}; leave out --align")
     sentence = f"B was shifted by {number(shift, 3)} s, by the correlation of {quantity(by)} ({number(alike, 3)})"
     return replace(second, time_s=second.time_s + shift), sentence

@@ -42,7 +42,7 @@ def study_command(
 
     from ..study.build import make_plan, read_materials
     from ..study.contents import files_of
-    from ..study.judging import Refused
+    from ..study.judging import StudyRefused
 
     materials = read_materials(file)
     _check_free(folder)
@@ -51,7 +51,7 @@ def study_command(
     try:
         plan = make_plan(materials, progress_bar, note)
         files = files_of(plan)
-    except Refused as refused:
+    except StudyRefused as refused:
         for reason in refused.reasons:
             note(f"refused: {reason}", always=True)
         note(CAUTION)

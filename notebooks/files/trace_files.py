@@ -31,7 +31,7 @@ HELD = ("current_A", "voltage_V")
 CLOSE_S = 1e-9
 
 
-class LogError(InputError):
+class TraceFileError(InputError):
     """A trace or log that cannot be read or compared; the text says where and what to change."""
 
 
@@ -70,7 +70,7 @@ def curves_of(trace: Trace, name: str) -> Curves:
 def read_curves(path: str, icon: str | None = None, theirs: Mapping[str, str] | None = None) -> Curves:
     """Return the curves in the file of a trace or log; of a file with several icons, those of `icon`.
 
-    `theirs` says what the file calls our columns. Raises LogError that says what is wrong and where.
+    `theirs` says what the file calls our columns. Raises TraceFileError that says what is wrong and where.
     """
     from thermicon.circuit.inputs import read_bytes, table_fault
     from thermicon.circuit.solver.trace import COLUMNS
@@ -78,8 +78,8 @@ def read_curves(path: str, icon: str | None = None, theirs: Mapping[str, str] | 
     from thermicon.icons.files.table import read_table
 
     where, example = Path(path), "time_s,display_C,skin_C"
-    data = read_bytes(where, "trace or log", MOST_MB, LogError)
-    table = read_table(data, table_fault(path, LogError), example, MOST_ROWS, COLUMNS[1:], theirs)
+    data = read_bytes(where, "trace or log", MOST_MB, TraceFileError)
+    table = read_table(data, table_fault(path, TraceFileError), example, MOST_ROWS, COLUMNS[1:], theirs)
     known = [name for name in dict.fromkeys(table.header) if name in COLUMNS[2:] or EXTRA.fullmatch(name)]
     if not known:
         raise missing(table, "display_C", "or another one of a trace, such as skin_C")
@@ -101,21 +101,21 @@ def _rows_of(icons: list[str], path: str, icon: str | None) -> list[int]:
     if icon is None and len(names) > 1:
         raise usage(f"{path} has traces of {len(names)} icons; name one of {', '.join(names)}", "--icon")
     if icon is not None and icon not in names:
-        raise LogError(f"{path}: no trace of {icon}; {did_you_mean(icon, names)}")
+        raise TraceFileError(f"{path}: no trace of {icon}; {did_you_mean(icon, names)}")
     return [row for row, name in enumerate(icons) if icon in (None, name)]
 
 
 def align(a: Curves, b: Curves) -> Aligned:
     """Lay two sets of curves on common times: those of a log where the other is a whole trace, else those of B.
 
-    Raises LogError where they share no time or no column.
+    Raises TraceFileError where they share no time or no column.
     """
     lead, other = (a, b) if b.whole and not a.whole else (b, a)
     low, high = max(a.time_s[0], b.time_s[0]), min(a.time_s[-1], b.time_s[-1])
     rows = (lead.time_s >= low - CLOSE_S) & (lead.time_s <= high + CLOSE_S)
     if rows.sum() < 2:
         spans = " and ".join(f"{each.name} {span(each.time_s[0], each.time_s[-1], 's', 2)}" for each in (a, b))
-        raise LogError(f"no two rows at a common time: {spans}; shift time_s of one of them")
+        raise TraceFileError(f"no two rows at a common time: {spans}; shift time_s of one of them")
     time = lead.time_s[rows]
     columns: dict[str, tuple[Array, Array]] = {}
     for name in (name for name in lead.columns if name in other.columns):
@@ -125,7 +125,7 @@ def align(a: Curves, b: Curves) -> Aligned:
             columns[name] = pair
     if not columns:
         has = "; ".join(f"{each.name} has {', '.join(each.columns)}" for each in (a, b))
-        raise LogError(f"no column with values in both: {has}")
+        raise TraceFileError(f"no column with values in both: {has}")
     said = f"compared at {len(time)} times, {span(time[0], time[-1], 's', 2)}"
     if len(a.time_s) != len(b.time_s) or not numpy.allclose(a.time_s, b.time_s, rtol=0.0, atol=CLOSE_S):
         said = f"compared at the {len(time)} times of {lead.name} in the common span, "

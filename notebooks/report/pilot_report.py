@@ -11,7 +11,7 @@ from thermicon.icons.number_text import percent, percent_span, signed
 from .blocks import Block, Bullets, Grid, Heading, Text, grid, printed_unit
 
 if TYPE_CHECKING:
-    from thermicon.perception.pilot.conditioning import Answered, Measured
+    from thermicon.perception.pilot.conditioning import Answered, MeasuredValues
     from thermicon.perception.pilot.observed import Observed
     from thermicon.perception.pilot.prediction import Fit, MeasurementFit
     from thermicon.perception.pilot.sealed import Opened
@@ -122,7 +122,7 @@ def constants(found: Observed[Any, Any]) -> list[Block]:
     return [Text("What moved or narrowed most (median and 95 %, before → after):"), Bullets(tuple(points))]
 
 
-def measured_blocks(found: Observed[Measured, MeasurementFit]) -> list[Block]:
+def measured_blocks(found: Observed[MeasuredValues, MeasurementFit]) -> list[Block]:
     """One row per condition: geometric mean of the participants, the predicted one before and after, and the fit."""
     columns = ("condition", "people", "measured", "predicted", "95 %", "after", "95 %")
     rows = []
@@ -134,7 +134,7 @@ def measured_blocks(found: Observed[Measured, MeasurementFit]) -> list[Block]:
     return [grid(columns, rows, ("people", "measured")), Text("\n".join(measured_sentences(found)))]
 
 
-def measured_sentences(found: Observed[Measured, MeasurementFit]) -> list[str]:
+def measured_sentences(found: Observed[MeasuredValues, MeasurementFit]) -> list[str]:
     """The test of fit, what the stars mean, and errors that were assumed."""
     values = found.data.measurements
     lines = [

@@ -10,16 +10,16 @@ from thermicon.icons.number_text import number, percent, percent_span
 from .blocks import Block, Grid, Text, grid
 
 if TYPE_CHECKING:
-    from thermicon.perception.pilot.plan import Design, Plan
+    from thermicon.perception.pilot.plan import ExperimentPlan, ExperimentSize
 
 
-def plan_report(found: Plan, names: Sequence[str]) -> list[Block]:
+def plan_report(found: ExperimentPlan, names: Sequence[str]) -> list[Block]:
     """Report predictions, designs, and the one to take."""
     predicted, designed = (Text("\n".join(lines)) for lines in (prediction_lines(found, names), design_lines(found)))
     return [predicted, designs_table(found), designed]
 
 
-def prediction_lines(found: Plan, names: Sequence[str]) -> list[str]:
+def prediction_lines(found: ExperimentPlan, names: Sequence[str]) -> list[str]:
     """What is predicted before any answer."""
     lines = []
     for name, each in zip(names, found.predictions, strict=True):
@@ -31,7 +31,7 @@ def prediction_lines(found: Plan, names: Sequence[str]) -> list[str]:
     return lines
 
 
-def designs_table(found: Plan) -> Grid:
+def designs_table(found: ExperimentPlan) -> Grid:
     """Participants down, trials across: width of the interval, or share of experiments that distinguish the sets."""
     trials = sorted({each.trials for each in found.designs})
     headings = [f"{each} trials" for each in trials]
@@ -42,12 +42,12 @@ def designs_table(found: Plan) -> Grid:
     return grid(("participants", *headings), rows, headings)
 
 
-def _cell(found: Plan, design: Design) -> str:
+def _cell(found: ExperimentPlan, design: ExperimentSize) -> str:
     text = f"{100 * design.width:.1f}" if design.found is None else percent(design.found)
     return f"{text} *" if found.enough(design) else f"{text}  "
 
 
-def design_lines(found: Plan) -> list[str]:
+def design_lines(found: ExperimentPlan) -> list[str]:
     """What the table shows, and which size to take."""
     best = found.cheapest
     if found.difference is None:

@@ -20,7 +20,7 @@ from thermicon.perception.observer.channels import VARIABLES
 from .blocks import Block, Bullets, Heading, Text, grid
 
 if TYPE_CHECKING:
-    from thermicon.perception.evidence.validate import Judged, Line, ValidationReport
+    from thermicon.perception.evidence.validate import JudgedRow, ReportRow, ValidationReport
 
 TITLE = "Experiments the constants were inferred from"
 TARGET_HEADS = ("temp.", "flow", "skin")
@@ -55,7 +55,7 @@ def validate_report(report: ValidationReport) -> list[Block]:
     ]
 
 
-def _line(line: Line) -> Sequence[str]:
+def _line(line: ReportRow) -> Sequence[str]:
     """A row of a target: name with its unit, what was published, and each prediction with its verdict."""
     cells = [f"{_predicted(line, one)} {MARK[one.verdict.word]}{_share(one)}" for one in line.judged]
     unit = "" if line.row.unit == line.published.unit else unit_text(line.row.unit)
@@ -64,13 +64,13 @@ def _line(line: Line) -> Sequence[str]:
     return name, line.published.text, *cells, skin, line.nearer_to_published
 
 
-def _predicted(line: Line, one: Judged) -> str:
+def _predicted(line: ReportRow, one: JudgedRow) -> str:
     if one.predicted.value is None:
         return "not felt"
     return value_text(line.row, one.predicted.value, line.published)
 
 
-def _share(one: Judged) -> str:
+def _share(one: JudgedRow) -> str:
     """Share of the draws in which a row on a knife edge holds."""
     return f" {100 * one.held:.0f} %" if one.held is not None and one.knife_edge else ""
 

@@ -18,8 +18,8 @@ from thermicon.icons.model.statements import Hold, Ramp, Return
 from thermicon.icons.near_words import did_you_mean
 from thermicon.icons.number_text import count_of
 
-from .judging import Judged, Progress, judge_drives, judge_sessions
-from .schedule import Course, Trial, check_counts, check_session_time, courses_of, seed_of
+from .judging import JudgedStudy, Progress, judge_drives, judge_sessions
+from .schedule import Schedule, Trial, check_counts, check_session_time, courses_of, seed_of
 from .study_file import (
     MOST_ASKED,
     Stimuli,
@@ -68,9 +68,9 @@ class Plan:
     """Everything that a study's folder is written from."""
 
     materials: Materials
-    judged: Judged
+    judged: JudgedStudy
     landing: Landing
-    courses: tuple[Course, ...]
+    courses: tuple[Schedule, ...]
 
     @property
     def durations_s(self) -> dict[str, float]:
@@ -129,7 +129,7 @@ def _beside(name: str, folder: Path) -> str:
 
 
 def make_plan(materials: Materials, bar: ProgressBar, say: Callable[[str], None] = lambda _: None) -> Plan:
-    """Derive the pauses, order the trials, and judge drives and sessions; raises Refused, StudyError, InputError.
+    """Derive the pauses, order the trials, and judge drives and sessions; raises StudyRefused, StudyError, InputError.
 
     `say` is told the plan before the judgement, which takes most of the time.
     """
@@ -161,7 +161,7 @@ def make_plan(materials: Materials, bar: ProgressBar, say: Callable[[str], None]
     check_session_time(plays, mean_s, gap.gap_s)
     with bar("sessions") as progress:
         judged = judge_sessions(_judged_courses(materials, courses), icons, rig, held, gap.gap_s, progress)
-    return Plan(materials, Judged(ready, gap, *judged), landing, courses)
+    return Plan(materials, JudgedStudy(ready, gap, *judged), landing, courses)
 
 
 def plays_of(study: Study, icons: int) -> int:
@@ -172,14 +172,14 @@ def plays_of(study: Study, icons: int) -> int:
     return icons * (study.trials.repetitions * study.trials.blocks + study.trials.practice)
 
 
-def _judged_courses(materials: Materials, courses: tuple[Course, ...]) -> tuple[Course, ...]:
+def _judged_courses(materials: Materials, courses: tuple[Schedule, ...]) -> tuple[Schedule, ...]:
     """Orders that are judged as sessions; for a threshold the worst: the greatest step in every trial."""
     threshold = materials.study.threshold
     if threshold is None:
         return courses
     strongest = materials.chosen[-1].name
     trials = tuple(Trial(1, number, strongest) for number in range(1, threshold.trials + 1))
-    return (Course("any", trials),)
+    return (Schedule("any", trials),)
 
 
 def _whole_session(rig: Rig, plays: int, mean_s: float, gap_s: float) -> Rig:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from thermicon.icons.model.arguments import advised
 
 from ..files.exporting import felt_in
-from .schedule import Course
+from .schedule import Schedule
 from .study_file import StudyError
 from .timing import Gap
 
@@ -30,7 +30,7 @@ KEYS: Mapping[str, Callable[[float], str]] = {"pause_s": "timing.gap_s = {:g}".f
 Progress = Callable[[int, int], None]
 
 
-class Refused(Exception):
+class StudyRefused(Exception):
     """A study that is not safe, or whose drives are refused; `reasons` say why, one a line."""
 
     def __init__(self, reasons: Sequence[str]) -> None:
@@ -39,7 +39,7 @@ class Refused(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class JudgedStudy:
     """Drives that may be written, the gap between them, and the sessions judged in the worst case, by participant.
 
     `drift_K` is the largest of the baseline; `after_breaks` the blocks, each from rest; both may be empty.
@@ -86,7 +86,7 @@ def judge_drives(
         if longer != gap:
             ready, gap = prepared(longer.gap_s), longer
     if ready.refused:
-        raise Refused([f"{name}: {advised(one.text, one.changes, KEYS)}" for name, one in ready.refused])
+        raise StudyRefused([f"{name}: {advised(one.text, one.changes, KEYS)}" for name, one in ready.refused])
     return ready, gap
 
 
@@ -108,12 +108,12 @@ def _longer_gap(ready: Export, gap: Gap, wait_for_skin: bool) -> Gap:
 
 
 def judge_sessions(
-    courses: Sequence[Course], icons: Sequence[Icon], rig: Rig, held: bool, gap_s: float, step: Progress | None = None
+    courses: Sequence[Schedule], icons: Sequence[Icon], rig: Rig, held: bool, gap_s: float, step: Progress | None = None
 ) -> tuple[dict[str, Session], dict[str, float], dict[str, WorstCase]]:
     """Judge whole sessions in the worst case; return them, every participant's drift of the baseline, and the blocks.
 
     Every order is run on the rig as given; in all corners those of up to four participants, or the most extreme ones.
-    Where there are breaks, each is run without them, and with every block from rest. Raises Refused where one is red.
+    Where there are breaks, each is run without them, and with every block from rest. Raises StudyRefused if one is red.
     """
     from thermicon.circuit import SessionPlan, play_session
     from thermicon.circuit.safety.sessionplay import drive_of, worst_case_of
@@ -147,7 +147,7 @@ def judge_sessions(
         if worst.colour == "red" and sessions[label].verdict != "red"
     ]
     if red:
-        raise Refused(red)
+        raise StudyRefused(red)
     return sessions, {label: values[3] for label, values in extremes.items()}, after_breaks
 
 

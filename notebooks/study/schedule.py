@@ -28,7 +28,7 @@ class Trial:
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
+class Schedule:
     """All trials of one participant."""
 
     label: str
@@ -83,7 +83,7 @@ def check_session_time(plays: int, mean_s: float, gap_s: float) -> None:
         )
 
 
-def courses_of(study: Study, icons: tuple[str, ...], seed: int) -> tuple[Course, ...]:
+def courses_of(study: Study, icons: tuple[str, ...], seed: int) -> tuple[Schedule, ...]:
     """Return the trials of every participant, none for a threshold; equal seeds give equal trials."""
     trials, labels = study.trials, labels_of(study)
     if trials is None:
@@ -99,7 +99,7 @@ def courses_of(study: Study, icons: tuple[str, ...], seed: int) -> tuple[Course,
             for place in places:
                 number = sum(row.block > 0 for row in rows) + 1 if block else 0
                 rows.append(Trial(block, number, icons[place]))
-        courses.append(Course(label, tuple(rows)))
+        courses.append(Schedule(label, tuple(rows)))
     return tuple(courses)
 
 
@@ -120,7 +120,7 @@ class PlannedPlay:
     end_s: float
 
 
-def planned_plays(course: Course, durations_s: Mapping[str, float], pace: Pace) -> tuple[PlannedPlay, ...]:
+def planned_plays(course: Schedule, durations_s: Mapping[str, float], pace: Pace) -> tuple[PlannedPlay, ...]:
     """Return the planned times of a participant's plays; practice goes over into the first block without a break."""
     now, last, plays = 0.0, None, []
     for trial in course.trials:
@@ -136,7 +136,7 @@ def planned_plays(course: Course, durations_s: Mapping[str, float], pace: Pace) 
 
 
 def planned_events(
-    course: Course, plays: Sequence[PlannedPlay], files: Mapping[str, str], markers: Mapping[str, int]
+    course: Schedule, plays: Sequence[PlannedPlay], files: Mapping[str, str], markers: Mapping[str, int]
 ) -> bytes:
     """The planned events of a participant as a table; answers are not known."""
     rows = [

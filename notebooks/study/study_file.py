@@ -29,13 +29,13 @@ MOST_ASKED = 30
 Order = Literal["balanced", "williams", "random"]
 
 
-class Table(BaseModel):
+class StudyTable(BaseModel):
     """A table of the file: unknown keys, wrong types and NaN are errors."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
-class Stimuli(Table):
+class Stimuli(StudyTable):
     """What is played, and on what."""
 
     set: Name | None = None
@@ -46,14 +46,14 @@ class Stimuli(Table):
     format: Literal["psychopy"] = "psychopy"
 
 
-class Participants(Table):
+class Participants(StudyTable):
     """Who takes part: a count, or labels."""
 
     count: Annotated[int | None, Field(ge=1, le=MOST_PARTICIPANTS)] = None
     labels: Annotated[list[Label] | None, Field(min_length=1, max_length=MOST_PARTICIPANTS)] = None
 
 
-class Trials(Table):
+class StudyTrials(StudyTable):
     """How often each icon is played, and in which order."""
 
     repetitions: Annotated[int, Field(ge=1, le=MOST_REPETITIONS)]
@@ -62,7 +62,7 @@ class Trials(Table):
     order: Order = "balanced"
 
 
-class Timing(Table):
+class Timing(StudyTable):
     """Pauses, and what they are derived from."""
 
     gap_s: Annotated[float | None, Field(ge=0, le=600)] = None
@@ -75,7 +75,7 @@ class Timing(Table):
     answer_s: Annotated[float, Field(ge=0, le=600)] = 0.0
 
 
-class Run(Table):
+class StudyRun(StudyTable):
     """What the script shows, and the keys and the line it uses."""
 
     question: Annotated[Line | None, Field(min_length=1)] = None
@@ -85,7 +85,7 @@ class Run(Table):
     marker: Annotated[Line, Field(pattern=r"^(none|serial:.+|parallel:.+|ni:.+)$")] = "none"
 
 
-class Threshold(Table):
+class Threshold(StudyTable):
     """A threshold measured by QUEST+ in place of trials in a given order."""
 
     direction: Literal["cool", "warm"]
@@ -99,7 +99,7 @@ class Threshold(Table):
     target: Annotated[float, Field(ge=0.4, le=0.8)] = 0.5
 
 
-class Study(Table):
+class Study(StudyTable):
     """A whole study file."""
 
     format: Literal[1]
@@ -107,14 +107,14 @@ class Study(Table):
     title: Annotated[Line, Field(max_length=LONGEST_NAME)] = ""
     stimuli: Stimuli
     participants: Participants
-    trials: Trials | None = None
+    trials: StudyTrials | None = None
     threshold: Threshold | None = None
     timing: Timing = Timing()
-    run: Run = Run()
+    run: StudyRun = StudyRun()
 
 
-TABLES: dict[str, type[Table]] = {
-    "stimuli": Stimuli, "participants": Participants, "trials": Trials, "timing": Timing, "run": Run,
+TABLES: dict[str, type[StudyTable]] = {
+    "stimuli": Stimuli, "participants": Participants, "trials": StudyTrials, "timing": Timing, "run": StudyRun,
     "threshold": Threshold,
 }  # fmt: skip
 """Tables of a study file by their keys, in the order of the reference."""
@@ -212,7 +212,7 @@ def _unit_of(key: str) -> str:
 
 def _nearest(place: Place) -> str:
     """The known key nearest to an unknown one, also where it stands in the wrong table."""
-    known: type[Table] = TABLES.get(str(place[0]), Study) if len(place) > 1 else Study
+    known: type[StudyTable] = TABLES.get(str(place[0]), Study) if len(place) > 1 else Study
     word = str(place[-1])
     if not nearest_words(word, known.model_fields, cutoff=0.55):
         for name, table in TABLES.items():

@@ -15,7 +15,7 @@ from thermicon.icons.number_text import number
 
 from ..editing.cue_check import read_text
 from ..editing.number_literals import Amount, Written, keyword_of, kind_of, replaced, written
-from .handles import PEAK_AT, RATES, Corner, Grip, corners_of, grip_of, slots_of
+from .handles import PEAK_AT, RATES, Grip, IconCorner, corners_of, grip_of, slots_of
 
 if TYPE_CHECKING:
     from thermicon.icons.model.parameter import Path
@@ -89,7 +89,7 @@ class _Move:
 
     icon: Icon
     index: int
-    corner: Corner
+    corner: IconCorner
     grip: Grip
     start: float | None
     place: Written

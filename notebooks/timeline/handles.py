@@ -27,7 +27,7 @@ RATES = ("rate_K_per_s", "rate_A_per_s", "rate_per_s")
 
 
 @dataclass(frozen=True, slots=True)
-class Corner:
+class IconCorner:
     """One corner as played, exact: its statement, the part of it, where that begins, and the corner; s and °C or A.
 
     ``path`` leads to the statement through repeats; None in a played icon, which ``played`` then names.
@@ -86,7 +86,7 @@ def handles_of(icon: Icon, family: Family | None = None, start: float | None = N
     return tuple(found)
 
 
-def corners_of(icon: Icon, start: float | None = None) -> tuple[Corner, ...]:
+def corners_of(icon: Icon, start: float | None = None) -> tuple[IconCorner, ...]:
     """Return the corners that handles stand for, in the order in which they are played."""
     return tuple(islice(_walk(icon, rest_level(icon.context, start)), MOST_HANDLES))
 
@@ -96,7 +96,7 @@ def slots_of(family: Family | None) -> dict[tuple[Path, str], str]:
     return {} if family is None else {(slot.path, slot.field): slot.parameter for slot in family.slots}
 
 
-def grip_of(corner: Corner, written: dict[tuple[Path, str], str]) -> Grip:
+def grip_of(corner: IconCorner, written: dict[tuple[Path, str], str]) -> Grip:
     """Return the numbers that a corner depends on, or the reason why it does not move."""
     if corner.path is None:
         return Grip(None, None, f"this is played from {corner.played}; select that icon to move its corners")
@@ -148,11 +148,11 @@ def _fields(leaf: Leaf, part: Part) -> tuple[str | None, str | None, str | None]
     return None, None, "this moves nothing"
 
 
-def _walk(icon: Icon, rest: Fraction) -> Iterator[Corner]:
+def _walk(icon: Icon, rest: Fraction) -> Iterator[IconCorner]:
     time, level = Fraction(0), rest
     for leaf, path, played, line in _leaves(icon.statements, (), None, 0):
         for part, after, to in _parts(leaf, level, rest):
-            yield Corner(leaf, part, path, played, line, time, level, time + after, to)
+            yield IconCorner(leaf, part, path, played, line, time, level, time + after, to)
         level, took = advance(leaf, level, rest)
         time += took
 

@@ -17,7 +17,7 @@ from thermicon.icons.files.shipped import NotRegular, TooLarge, read_limited
 from ..editing.cue_check import read_text
 from ..files.exporting import felt_in, others
 from ..report.blocks import fragment
-from .live_view import Job, LiveView
+from .live_view import BackgroundJob, LiveView
 from .set_model import MOST_RANKED
 from .view_blocks import delivered_html, gate_html, written_html
 
@@ -93,7 +93,7 @@ class ExportView(LiveView[ExportRequest]):
             return f"{len(icons):,} icons are more than {MOST_RANKED}: use the command thermicon export"
         return None
 
-    def _job(self, request: ExportRequest) -> Callable[[Job], None]:
+    def _job(self, request: ExportRequest) -> Callable[[BackgroundJob], None]:
         self._say("working …")
         return lambda job: self._prepare(job, request)
 
@@ -124,7 +124,7 @@ class ExportView(LiveView[ExportRequest]):
         name = self.design.scene.icon if self.which.value == "shown" else None
         return self.design.text, self.design.rig, name, self.device.value, self.form.value
 
-    def _prepare(self, job: Job, request: ExportRequest) -> None:
+    def _prepare(self, job: BackgroundJob, request: ExportRequest) -> None:
         """The background job."""
         from thermicon.circuit import export
 

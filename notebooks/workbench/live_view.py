@@ -26,7 +26,7 @@ class Superseded(Exception):
     """A newer job was requested, so this one ends without a message."""
 
 
-class Job:
+class BackgroundJob:
     """Handle of a running job: whether it is still the newest, and how it changes the page."""
 
     def __init__(self, owner: BackgroundWorker, number: int, loop: asyncio.AbstractEventLoop | None) -> None:
@@ -52,7 +52,7 @@ class Job:
             self._loop.call_soon_threadsafe(lambda: safely(act, self._owner.fail) if self.newest else None)
 
 
-Work = Callable[[Job], None]
+Work = Callable[[BackgroundJob], None]
 
 
 class BackgroundWorker:
@@ -74,7 +74,7 @@ class BackgroundWorker:
             loop: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
         except RuntimeError:
             loop = None  # plain Python: there is no event loop of a page
-        job = Job(self, self.number, loop)
+        job = BackgroundJob(self, self.number, loop)
         thread = Thread(target=self._run, args=(job, work, after_s), name="thermicon work", daemon=True)
         self.threads = [each for each in self.threads if each.is_alive()] + [thread]
         thread.start()
@@ -83,7 +83,7 @@ class BackgroundWorker:
         """Make the running job stale without starting a new one."""
         self.number += 1
 
-    def _run(self, job: Job, work: Work, after_s: float) -> None:
+    def _run(self, job: BackgroundJob, work: Work, after_s: float) -> None:
         until = time.monotonic() + after_s
         while job.newest and (left := until - time.monotonic()) > 0:
             time.sleep(min(left, 0.05))

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from thermicon.icons.number_text import percent
 
 from ..editing.cue_check import read_text
-from .live_view import Job, LiveView
+from .live_view import BackgroundJob, LiveView
 from .set_model import QUICK, WELL, SetRequest, draws_of, why_not
 
 if TYPE_CHECKING:
@@ -78,11 +78,11 @@ class SetStrip(LiveView[SetRequest]):
     def _obstacle(self, request: SetRequest) -> str | None:
         return why_not(read_text(request[0]))
 
-    def _job(self, request: SetRequest) -> Callable[[Job], None]:
+    def _job(self, request: SetRequest) -> Callable[[BackgroundJob], None]:
         self._why = ""
         return lambda job: self._rank(job, request)
 
-    def _rank(self, job: Job, request: SetRequest) -> None:
+    def _rank(self, job: BackgroundJob, request: SetRequest) -> None:
         """The background job, on one core: the other one draws."""
         from thermicon.perception import Goal, rank
         from thermicon.perception.ranking.rank import with_intervals

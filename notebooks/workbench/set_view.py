@@ -14,7 +14,7 @@ from ..report.blocks import Bullets, fragment, shown
 from ..report.rank_report import rank_report
 from ..report.set_report import SetReport
 from .design_view import SideCanvas
-from .live_view import BackgroundWorker, Job, LiveView, button
+from .live_view import BackgroundJob, BackgroundWorker, LiveView, button
 from .set_model import QUICK, WELL, RankedSet, SetRequest, draws_of, heat_frame, overlay_frame, rank_set, why_not
 from .view_blocks import edit_html, pair_html, set_html
 
@@ -89,7 +89,7 @@ class SetView(LiveView[SetRequest]):
             return reason
         return f"{reason}; the last valid set is shown, for {self.made.ranking.people} people"
 
-    def _job(self, request: SetRequest) -> Callable[[Job], None]:
+    def _job(self, request: SetRequest) -> Callable[[BackgroundJob], None]:
         self._say("ranking …")
         self.chooser.forget()
         self._show_choice("")
@@ -142,7 +142,7 @@ class SetView(LiveView[SetRequest]):
         self._show_choice(fragment("marked", "choosing …", "th-status"))
         self.chooser.ask(lambda job: self._choose(job, text, rig, count, goal))
 
-    def _choose(self, job: Job, text: str, rig: Rig, count: int, goal: str) -> None:
+    def _choose(self, job: BackgroundJob, text: str, rig: Rig, count: int, goal: str) -> None:
         from thermicon.perception import Goal
 
         from ..cli.improve import chosen, objective_of
@@ -157,7 +157,7 @@ class SetView(LiveView[SetRequest]):
     def _show_choice(self, html: str) -> None:
         self.said["choice"].value, self.said["choice"].layout.display = html, "" if html else "none"
 
-    def _rank(self, job: Job, request: SetRequest) -> None:
+    def _rank(self, job: BackgroundJob, request: SetRequest) -> None:
         """The background job: a quick ranking with a few people, then one with enough for the final numbers."""
         if self.made is None or request != self._source():
             first = self._ranked(request, QUICK, job.go_on)
@@ -218,7 +218,7 @@ class SetView(LiveView[SetRequest]):
         if well or self.picked is None:
             self._safely(lambda: self.pick(*pair))
 
-    def _look_for_edit(self, job: Job, made: RankedSet, a: str, b: str) -> None:
+    def _look_for_edit(self, job: BackgroundJob, made: RankedSet, a: str, b: str) -> None:
         from thermicon.perception import cheapest_edit
 
         found = cheapest_edit(made.ranking, a, b)

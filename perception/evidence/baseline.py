@@ -2,11 +2,11 @@
 
 import math
 
-from .targets import Published, Row
+from .targets import Published, TargetRow
 from .verdicts import judge_row
 
 
-def nearer_of(row: Row, model: float | None, baseline: float | None, published: Published) -> str:
+def nearer_of(row: TargetRow, model: float | None, baseline: float | None, published: Published) -> str:
     """Which of `model` and `baseline` is nearer to the published number, or else to the criterion of the row.
 
     `both` where they are as near, nothing where there is no baseline, or nothing to be near to.

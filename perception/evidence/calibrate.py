@@ -7,7 +7,7 @@ import math
 from dataclasses import replace
 
 from thermicon.circuit import Rig
-from thermicon.circuit.records import Record, Table, dump_records
+from thermicon.circuit.records import Record, RecordTable, dump_records
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import steady_state
 
@@ -28,20 +28,20 @@ Numbers `from heat flow` are those of the other variant.
 Written by a program: change the evidence or the priors and run it again."""
 
 
-def calibrate(thresholds: Table | None = None) -> Table:
+def calibrate(thresholds: RecordTable | None = None) -> RecordTable:
     """Records of the observer and its variants, with thresholds from the shipped table or another one like it."""
     table = load_thresholds() if thresholds is None else thresholds
-    known = Table(table.name, tuple(r for r in table if r.use in ("calibrate", "assumed")))
+    known = RecordTable(table.name, tuple(r for r in table if r.use in ("calibrate", "assumed")))
     shared = (
         *_taken_over(known),
         *(_neutral_flux(known, channel) for channel in CHANNELS),
         *(record for variant in VARIABLES for record in _inferred(variant)),
     )
     noise = [_memory(known, shared, variant) for variant in VARIABLES]
-    return Table("observer.toml", tuple(_rounded(r) for r in (*shared, *noise)))
+    return RecordTable("observer.toml", tuple(_rounded(r) for r in (*shared, *noise)))
 
 
-def to_toml(observer: Table) -> str:
+def to_toml(observer: RecordTable) -> str:
     """Text of the parameter file, the same bytes for the same records."""
     return dump_records(observer, comment=COMMENT)
 
@@ -74,14 +74,14 @@ def _record(each: Constant, interval: tuple[float, float, float], variant: str) 
     )
 
 
-def _memory(known: Table, shared: tuple[Record, ...], variable: Variable) -> Record:
+def _memory(known: RecordTable, shared: tuple[Record, ...], variable: Variable) -> Record:
     """Memory noise of a variant, by the rate task through its own distance."""
     unset = memory_record(source_of(variable), 1.0, 1.0, 1.0)
-    draft = Observer.from_table(Table("draft", (*shared, unset)), variable=variable)
+    draft = Observer.from_table(RecordTable("draft", (*shared, unset)), variable=variable)
     return memory_noise(known, draft)
 
 
-def _taken_over(known: Table) -> tuple[Record, ...]:
+def _taken_over(known: RecordTable) -> tuple[Record, ...]:
     """Records that enter as they are, under the observer's own names."""
     zone, area = known.one("complete adaptation"), known.one("thermode area of the forced-choice thresholds")
     (neutral, reference), (low, high) = names_of(Observer, "neutral_C", "reference_area_m2"), zone.interval
@@ -124,7 +124,7 @@ def _rounded(record: Record) -> Record:
 RIG = "thenar"
 
 
-def _neutral_flux(known: Table, channel: Channel) -> Record:
+def _neutral_flux(known: RecordTable, channel: Channel) -> Record:
     """Heat flow at receptor depth while the skin rests at the ends of complete adaptation."""
     zone = known.one("complete adaptation")
     rig = Rig.load(RIG)

@@ -19,7 +19,7 @@ SIX = "six-icons"
 
 
 @dataclass(frozen=True, slots=True)
-class Evidence:
+class ShownEvidence:
     """Predictions of all variants, confusions, and likeness of the waves at the skin."""
 
     predicted: tuple[Predicted, ...]
@@ -36,7 +36,7 @@ class Evidence:
         raise ValueError(f"no experiment {experiment!r} predicts {quantity!r} ({channel})")
 
 
-def collect_evidence(people: int, draws: int, seed: int, trials: int, progress: Progress | None = None) -> Evidence:
+def collect_evidence(people: int, draws: int, seed: int, trials: int, progress: Progress | None) -> ShownEvidence:
     """Run everything; `progress` is called with (steps done, steps in all)."""
     from thermicon.icons import IconSet, load_library
 
@@ -57,7 +57,7 @@ def collect_evidence(people: int, draws: int, seed: int, trials: int, progress: 
         waves_named.append(shown_waves.identify(variable, draws))
         predicted += wave_shapes(waves_named[-1], alike)
         step()
-    return Evidence(tuple(predicted), tuple(six_named), tuple(waves_named), alike)
+    return ShownEvidence(tuple(predicted), tuple(six_named), tuple(waves_named), alike)
 
 
 def _experiments(

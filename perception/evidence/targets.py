@@ -9,7 +9,7 @@ from functools import lru_cache
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from thermicon.circuit.records import Record, RecordError, Table
+from thermicon.circuit.records import Record, RecordError, RecordTable
 
 from ..observer.observer import DATA
 
@@ -47,7 +47,7 @@ class Published:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class TargetRow:
     """One number of a target, the rule it is judged by; `compared`: what was published is the same quantity."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
@@ -106,7 +106,7 @@ class Target:
     source: str
     asks: str
     mechanism: str
-    rows: tuple[Row, ...]
+    rows: tuple[TargetRow, ...]
 
 
 @lru_cache(maxsize=1)
@@ -129,7 +129,7 @@ def read_targets(text: str) -> tuple[Target, ...]:
         raise RecordError(f"targets.toml: target {place}: {first['msg']}") from None
 
 
-def published_for(row: Row, table: Table) -> Published:
+def published_for(row: TargetRow, table: RecordTable) -> Published:
     """What a table has for a row; a `RecordError` where no record, or more than one, fits what the row names."""
     if not row.published:
         return Published(row.says or "–", "" if row.says else "nothing published")
@@ -176,7 +176,7 @@ def plain(value: float) -> str:
     return text.replace("-", MINUS)
 
 
-def _said(row: Row, number: str, record: Record) -> str:
+def _said(row: TargetRow, number: str, record: Record) -> str:
     """A published number in the words of its row, marked where the constants were inferred from it."""
     mark = ", fitted" if record.use == "calibrate" else ""
     return (row.says.replace("{}", number) if row.says else number) + mark
@@ -186,7 +186,7 @@ def _under(record: Record) -> str:
     return "; ".join(part for part in (record.site, record.method, record.conditions) if part)
 
 
-def _record(row: Row, table: Table, channel: str) -> Record:
+def _record(row: TargetRow, table: RecordTable, channel: str) -> Record:
     found = table.select(row.published, channel=channel, site=row.published_site)
     fits = [record for record in found if record.conditions.startswith(row.published_where)]
     if len(fits) != 1:

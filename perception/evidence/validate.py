@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from thermicon.circuit.records import Table
+from thermicon.circuit.records import RecordTable
 from thermicon.icons.drawn import Tabled
 from thermicon.icons.model.arguments import checked
 
@@ -18,14 +18,14 @@ from ..observer.channels import VARIABLES, Variable
 from ..observer.observer import load_thresholds
 from .baseline import nearer_of
 from .predicted import Predicted, interval_of
-from .targets import PAIRED, Published, Row, Target, combined, load_targets, published_for
+from .targets import PAIRED, Published, Target, TargetRow, combined, load_targets, published_for
 from .verdicts import Verdict, judge_row
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from ..kernels.parallel import Progress
-    from .shown import Evidence
+    from .shown import ShownEvidence
 
 PEOPLE, TRIALS = 200, 48
 SURE = 0.8
@@ -33,7 +33,7 @@ SURE = 0.8
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class JudgedRow:
     """A row as one variant predicts it, the verdict, and the share of draws in which it holds (None: not judged)."""
 
     predicted: Predicted
@@ -47,12 +47,12 @@ class Judged:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class ReportRow:
     """A row of the report: what was published, and the judgement of every variant in the order of VARIABLES."""
 
-    row: Row
+    row: TargetRow
     published: Published
-    judged: tuple[Judged, ...]
+    judged: tuple[JudgedRow, ...]
 
     @property
     def baseline(self) -> float | None:
@@ -70,7 +70,7 @@ class Section:
     """One target with its lines."""
 
     target: Target
-    lines: tuple[Line, ...]
+    lines: tuple[ReportRow, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ class ValidationReport(Tabled):
     seed: int
     trials: int
     sections: tuple[Section, ...]
-    evidence: Evidence
+    evidence: ShownEvidence
 
     def counts(self, variant: int) -> tuple[int, int]:
         """How many judged rows hold for a variant, of how many."""
@@ -185,7 +185,9 @@ def validate(
     return assemble(evidence, load_thresholds(), people, draws, seed, trials)
 
 
-def assemble(evidence: Evidence, table: Table, people: int, draws: int, seed: int, trials: int) -> ValidationReport:
+def assemble(
+    evidence: ShownEvidence, table: RecordTable, people: int, draws: int, seed: int, trials: int
+) -> ValidationReport:
     """Judge evidence that is there already by a table of published numbers."""
     from thermicon.circuit.program import own_version
 
@@ -194,16 +196,16 @@ def assemble(evidence: Evidence, table: Table, people: int, draws: int, seed: in
         lines = []
         for row in target.rows:
             was = published_for(row, table)
-            lines.append(Line(row, was, tuple(judged(row, was, table, evidence, variant) for variant in VARIABLES)))
+            lines.append(ReportRow(row, was, tuple(judged(row, was, table, evidence, each) for each in VARIABLES)))
         sections.append(Section(target, tuple(lines)))
     return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), evidence)
 
 
-def judged(row: Row, was: Published, table: Table, evidence: Evidence, variable: Variable) -> Judged:
+def judged(row: TargetRow, was: Published, table: RecordTable, shown: ShownEvidence, by: Variable) -> JudgedRow:
     """A row as one variant predicts it; a ValueError where nothing predicts it."""
 
     def found(channel: str) -> Predicted:
-        return evidence.find(variable, row.experiment, row.quantity, channel, row.predicted_where)
+        return shown.find(by, row.experiment, row.quantity, channel, row.predicted_where)
 
     if row.apply in PAIRED:
         made = _both(row, found("cold"), found("warm"))
@@ -214,10 +216,10 @@ def judged(row: Row, was: Published, table: Table, evidence: Evidence, variable:
             made = _linear(made, factor, 1.0 if row.apply == "one plus" else 0.0)
     made = replace(made, unit=row.unit)
     held = [judge_row(row, each, was).holds is True for each in made.draws] if row.judged else []
-    return Judged(made, judge_row(row, made.value, was), sum(held) / len(held) if held else None)
+    return JudgedRow(made, judge_row(row, made.value, was), sum(held) / len(held) if held else None)
 
 
-def _both(row: Row, cold: Predicted, warm: Predicted) -> Predicted:
+def _both(row: TargetRow, cold: Predicted, warm: Predicted) -> Predicted:
     """One prediction of two channels; None or inf where one of them was not felt."""
     value = None if cold.value is None or warm.value is None else combined(row.apply, cold.value, warm.value)
     each = tuple(

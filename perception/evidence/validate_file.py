@@ -8,7 +8,7 @@ from ..observer.channels import VARIABLES
 from .predicted import Predicted
 from .results import PredictedRow, judging_predictions, load_predictions, median_half_width
 from .rows import load_evidence
-from .validate import Judged, Line, ValidationReport
+from .validate import JudgedRow, ReportRow, ValidationReport
 from .verdicts import criterion_of_row
 
 
@@ -36,7 +36,7 @@ def report_file(report: ValidationReport) -> dict[str, Any]:
     }
 
 
-def _line(line: Line) -> dict[str, Any]:
+def _line(line: ReportRow) -> dict[str, Any]:
     return {
         "row": line.row.label,
         "unit": line.row.unit,
@@ -48,7 +48,7 @@ def _line(line: Line) -> dict[str, Any]:
     }
 
 
-def _judged(one: Judged) -> dict[str, Any]:
+def _judged(one: JudgedRow) -> dict[str, Any]:
     found, verdict = one.predicted, one.verdict
     return {
         **_data(found, "conditions", variant="variable"),

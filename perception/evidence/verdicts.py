@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from thermicon.icons.number_text import significant
 
-from .targets import MINUS, Published, Row, plain
+from .targets import MINUS, Published, TargetRow, plain
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,11 +25,11 @@ class Verdict:
         return "shown" if self.holds is None else "holds" if self.holds else "misses"
 
 
-def judge_row(row: Row, predicted: float | None, published: Published) -> Verdict:
+def judge_row(row: TargetRow, predicted: float | None, published: Published) -> Verdict:
     """The verdict on a predicted number, None where nothing was felt or there is no number.
 
-    >>> from thermicon.perception.evidence.targets import Published, Row
-    >>> row = Row("limits", "warm", "K", "limits", "threshold", "factor", "ours", value=1.5, published="limits")
+    >>> from thermicon.perception.evidence.targets import Published, TargetRow
+    >>> row = TargetRow("limits", "warm", "K", "limits", "threshold", "factor", "ours", value=1.5, published="limits")
     >>> judge_row(row, 3.0, Published("1.5 K", "somebody", value=1.5)).text
     '×2.00, at most ×1.5 either way'
     """
@@ -65,7 +65,7 @@ CRITERIA = {
 }
 
 
-def criterion_of_row(row: Row, published: Published) -> str:
+def criterion_of_row(row: TargetRow, published: Published) -> str:
     """The rule in words, with its numbers."""
     value, middle = row.value or 0.0, published.value or 0.0
     low, high = _bounds(row, published)[:2] if row.rule.endswith("range") else (0.0, 0.0)
@@ -81,10 +81,10 @@ def criterion_of_row(row: Row, published: Published) -> str:
     )
 
 
-def value_text(row: Row, value: float, published: Published) -> str:
+def value_text(row: TargetRow, value: float, published: Published) -> str:
     """The value with as many digits as it takes to see on which side of the bounds of the rule it lies.
 
-    >>> value_text(Row("ratio", "", "1", "x", "y", "at least", "ours", value=2.0), 1.9953, Published("", ""))
+    >>> value_text(TargetRow("ratio", "", "1", "x", "y", "at least", "ours", value=2.0), 1.9953, Published("", ""))
     '1.995'
     """
     if row.rule in ("shown", "factor", "share") or not math.isfinite(value):
@@ -94,11 +94,11 @@ def value_text(row: Row, value: float, published: Published) -> str:
     return text if "e" not in text and len(text) > len(plain(value)) else plain(value)
 
 
-def _unit(row: Row) -> str:
+def _unit(row: TargetRow) -> str:
     return "" if row.unit == "1" else f" {row.unit}"
 
 
-def _by_ratio(row: Row, predicted: float, published: Published, asked: str) -> Verdict:
+def _by_ratio(row: TargetRow, predicted: float, published: Published, asked: str) -> Verdict:
     ratio = predicted / _value(row, published)
     if ratio <= 0.0:
         return Verdict(False, math.inf, f"of the other sign; {asked}")
@@ -112,7 +112,7 @@ def _by_ratio(row: Row, predicted: float, published: Published, asked: str) -> V
     return Verdict(False, abs(math.log(ratio)), f"{way}, {asked}")
 
 
-def _bounds(row: Row, published: Published) -> tuple[float, float, bool]:
+def _bounds(row: TargetRow, published: Published) -> tuple[float, float, bool]:
     """Least, most, and whether the bounds themselves are outside."""
     value = row.value or 0.0
     if row.rule == "range":
@@ -131,7 +131,7 @@ def _bounds(row: Row, published: Published) -> tuple[float, float, bool]:
     return middle - value, middle + value, False
 
 
-def _value(row: Row, published: Published) -> float:
+def _value(row: TargetRow, published: Published) -> float:
     if published.value is None:
         raise ValueError(f"{row.label}: the published record has no value to compare with")
     return published.value

@@ -24,7 +24,7 @@ from ..observer.mechanisms.age import YOUNG_YEARS
 from ..observer.mechanisms.site import on_forearm
 from ..observer.observer import Observer
 from .laboratory import PEOPLE, SEED, Laboratory
-from .tasks import UNSTATED, Played, Ramp, yes_no_logs
+from .tasks import UNSTATED, DisplayRamp, Stimulated, yes_no_logs
 
 Kind = Literal["threshold", "reaction_time", "rating", "wrong_quality"]
 METHODS: dict[Kind, tuple[str, ...]] = {
@@ -168,14 +168,14 @@ def logs_of(
     site, channel, limits = setting.path_site, condition.channel, condition.method == "limits"
     gain = laboratory.gain(channel, setting.area_cm2, OWN, site, YOUNG_YEARS)
 
-    def ramp(size_K: float, hold_s: float) -> Ramp:
-        return Ramp.held(setting.site_rig, channel, condition.baseline_C, size_K, condition.rate_K_per_s, hold_s)
+    def ramp(size_K: float, hold_s: float) -> DisplayRamp:
+        return DisplayRamp.held(setting.site_rig, channel, condition.baseline_C, size_K, condition.rate_K_per_s, hold_s)
 
     if condition.method == "yes_no":
         ramps = [ramp(size, condition.hold_s) for size in YES_NO_SIZES_K.tolist()]
         return yes_no_logs(laboratory, ramps, gain)[0], UNSTATED
     if condition.method == "forced_choice":
-        peaks = [Played.of(laboratory, ramp(size, condition.hold_s)).peak for size in sizes_K.tolist()]
+        peaks = [Stimulated.of(laboratory, ramp(size, condition.hold_s)).peak for size in sizes_K.tolist()]
         logs = np.maximum.accumulate(np.log(peaks))
         rising = np.append(True, np.diff(logs) > 0.0)
         wanted = np.log(laboratory.people.threshold(channel) / gain)
@@ -183,7 +183,7 @@ def logs_of(
     assert condition.size_K is not None
     timed = condition.kind == "reaction_time"
     hold_s = 0.0 if limits else max(condition.hold_s, AFTER_S) if timed else condition.hold_s
-    played = Played.of(laboratory, ramp(condition.size_K, hold_s))
+    played = Stimulated.of(laboratory, ramp(condition.size_K, hold_s))
     if limits:
         logs = np.log(played.limits_K(gain, site))
         return logs.mean(axis=1), float(np.median(logs.std(axis=1)))
@@ -203,7 +203,7 @@ def misnamed_of(laboratory: Laboratory, setting: Setting, condition: Condition) 
     assert condition.size_K is not None
     cold, warm = (laboratory.gain(each, setting.area_cm2, OWN, setting.path_site, YOUNG_YEARS) for each in CHANNELS)
     about = setting.site_rig, condition.channel, condition.baseline_C, condition.size_K, condition.rate_K_per_s
-    played = Played.of(laboratory, Ramp.held(*about, max(condition.hold_s, AFTER_S)))
+    played = Stimulated.of(laboratory, DisplayRamp.held(*about, max(condition.hold_s, AFTER_S)))
     shares = played.misnamed(Both(cold, warm).of(condition.channel), warm, setting.path_site)
     return shares, float(np.median(np.sqrt(shares * (1.0 - shares))))
 

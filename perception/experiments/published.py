@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import Array
 from ..observer.channels import CHANNELS, Channel
 from .laboratory import DT_S, Laboratory, samples_of
-from .tasks import Played, Ramp, yes_no_logs
+from .tasks import DisplayRamp, Stimulated, yes_no_logs
 
 Key = tuple[str, str, str]
 """Experiment, statistic, channel."""
@@ -45,7 +45,7 @@ def reaction_times(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E1: warm or cold, as fast as possible, by area."""
     log_medians: dict[tuple[Channel, int], Array] = {}
     for channel, (rate, size) in RAMPS.items():
-        played = Played.of(laboratory, Ramp("forearm", channel, 31.0, size, rate, 6.0))
+        played = Stimulated.of(laboratory, DisplayRamp("forearm", channel, 31.0, size, rate, 6.0))
         for strips in (1, 5):
             gain = laboratory.gain(channel, strips * STRIP_CM2, "E1", "forearm", MEAN_AGE_YEARS["E1"])
             times = np.minimum(played.answers_s(gain, "forearm", choice=True), 7.0)
@@ -67,7 +67,7 @@ STRIPS = range(1, 6)
 def quality_in_haste(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E8: the task of E1, and how often its answers name the wrong quality, in the mean over its areas."""
     for (channel, (rate, size)), other in zip(RAMPS.items(), reversed(CHANNELS), strict=True):
-        played, shares = Played.of(laboratory, Ramp("forearm", channel, 31.0, size, rate, 6.0)), []
+        played, shares = Stimulated.of(laboratory, DisplayRamp("forearm", channel, 31.0, size, rate, 6.0)), []
         for strips in STRIPS:
             at = strips * STRIP_CM2, "E1", "forearm", MEAN_AGE_YEARS["E1"]
             gain, warm_gain = laboratory.gain(channel, *at), laboratory.gain("warm", *at)
@@ -83,7 +83,7 @@ def limits(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E3: limits at 1 K/s on the forearm, repeated."""
     means = []
     for channel in CHANNELS:
-        played = Played.of(laboratory, Ramp.held("forearm", channel, 32.0, LIMIT_K, 1.0, 0.0))
+        played = Stimulated.of(laboratory, DisplayRamp.held("forearm", channel, 32.0, LIMIT_K, 1.0, 0.0))
         gain = laboratory.gain(channel, 5 * STRIP_CM2, "E3", "forearm", MEAN_AGE_YEARS["E3"])
         pressed_K = played.limits_K(gain, "forearm")
         logs = np.log(np.where(pressed_K > ANTICIPATION_K, pressed_K, np.nan))
@@ -109,7 +109,7 @@ def order_of_sites(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     @cache
     def limit(place: tuple[str, str], channel: Channel, area_cm2: float) -> float:
         rig, site = place
-        played = Played.of(laboratory, Ramp.held(rig, channel, 32.0, LIMIT_K, 1.0, 0.0))
+        played = Stimulated.of(laboratory, DisplayRamp.held(rig, channel, 32.0, LIMIT_K, 1.0, 0.0))
         # Any laboratory's offset: both sites have it.
         gain = laboratory.gain(channel, area_cm2, "E3", site, MEAN_AGE_YEARS["E3"])
         return float(np.log(played.limits_K(gain, site)).mean())
@@ -130,7 +130,7 @@ def yes_no(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     for channel in CHANNELS:
         gain = laboratory.gain(channel, TWO_STRIPS_CM2, "E4", "forearm", MEAN_AGE_YEARS["E4"])
         sizes = SIZES_K[channel].tolist()
-        ramps = [Ramp.held("forearm", channel, 30.0, size, DETECTION_K_PER_S, PLATEAU_S) for size in sizes]
+        ramps = [DisplayRamp.held("forearm", channel, 30.0, size, DETECTION_K_PER_S, PLATEAU_S) for size in sizes]
         log_half, log_width = yes_no_logs(laboratory, ramps, gain)
         thresholds.append(log_half)
         yield ("E4", "threshold50_gm_age30", channel), float(log_half.mean())
@@ -191,7 +191,7 @@ def forced_choice(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """How many times threshold the published forced-choice thresholds are: 1 would be right (log 0)."""
     for place, site, rig, sizes in FORCED_CHOICE:
         for channel, size in sizes.items():
-            peak = Played.of(laboratory, Ramp.held(rig, channel, 32.0, size, 1.0, 3.0)).peak
+            peak = Stimulated.of(laboratory, DisplayRamp.held(rig, channel, 32.0, size, 1.0, 3.0)).peak
             gain = laboratory.gain(channel, 9.0, place, site, 25.0)
             yield (place, "detection threshold", channel), -math.log(max(peak * gain, 1e-6))
     for channel in CHANNELS:
@@ -208,7 +208,7 @@ def differences(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     for channel, size in FORCED_CHOICE[0][3].items():
         steps = size * laboratory.constants.difference_threshold(PEDESTALS)
         yield ("amplitudes", "amplitude difference threshold", channel), float(np.log(steps).mean())
-    peak = Played.of(laboratory, Ramp("forearm", "warm", 34.0, 10.0, 0.5, 20.0)).peak
+    peak = Stimulated.of(laboratory, DisplayRamp("forearm", "warm", 34.0, 10.0, 0.5, 20.0)).peak
     multiple = peak / laboratory.constants.threshold_drive.warm
     yield (
         ("steps", "steps from threshold to pain", "warm"),
@@ -228,7 +228,7 @@ def ratings(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E2 and E6: ratings by area and by size; a rating is a power of the largest drive in multiples of threshold."""
     constants = laboratory.constants
     for channel, (rate, size) in RATED.items():
-        peak = Played.of(laboratory, Ramp.held("forearm", channel, 31.0, size, rate, 0.7)).peak
+        peak = Stimulated.of(laboratory, DisplayRamp.held("forearm", channel, 31.0, size, rate, 0.7)).peak
         one, five = (
             peak * laboratory.gain(channel, n * STRIP_CM2, "E1", "forearm", MEAN_AGE_YEARS["E1"]) for n in (1, 5)
         )
@@ -240,7 +240,7 @@ def ratings(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
         yield ("E2", "rating_within_sd_pooled", channel), math.log(scatter)
         change, _ = E6_SIZES[channel]
         low, high = (
-            Played.of(laboratory, Ramp.held("forearm", channel, 30.0, times * change, E6_K_PER_S, 2.0)).peak
+            Stimulated.of(laboratory, DisplayRamp.held("forearm", channel, 30.0, times * change, E6_K_PER_S, 2.0)).peak
             for times in (0.8, 1.25)
         )
         yield (

@@ -23,7 +23,7 @@ HALVES = (0.16, 0.5, 0.84)
 
 
 @dataclass(frozen=True, slots=True)
-class Ramp:
+class DisplayRamp:
     """A ramp of the display over the skin of a rig's site: size in K without sign, K/s, held until `end_s`."""
 
     site_rig: str
@@ -36,7 +36,7 @@ class Ramp:
     @classmethod
     def held(
         cls, site_rig: str, channel: Channel, baseline_C: float, size_K: float, rate_K_per_s: float, hold_s: float
-    ) -> Ramp:
+    ) -> DisplayRamp:
         """A ramp whose end is held for so many seconds."""
         return cls(site_rig, channel, baseline_C, size_K, rate_K_per_s, size_K / rate_K_per_s + hold_s)
 
@@ -47,15 +47,15 @@ class Ramp:
 
 
 @dataclass(frozen=True, slots=True)
-class Played:
+class Stimulated:
     """A ramp played in a laboratory: receptor drive (rows,) of its channel. Gains are multiples of threshold a unit."""
 
     laboratory: Laboratory
-    ramp: Ramp
+    ramp: DisplayRamp
     drive: Array
 
     @classmethod
-    def of(cls, laboratory: Laboratory, ramp: Ramp) -> Played:
+    def of(cls, laboratory: Laboratory, ramp: DisplayRamp) -> Stimulated:
         """Play it."""
         drive = laboratory.drive(ramp.site_rig, ramp.channel, ramp.baseline_C, ramp.corners, ramp.end_s)
         return cls(laboratory, ramp, drive)
@@ -93,11 +93,11 @@ class Played:
         return found
 
 
-def yes_no_logs(laboratory: Laboratory, ramps: Sequence[Ramp], gain: float) -> tuple[Array, Array]:
+def yes_no_logs(laboratory: Laboratory, ramps: Sequence[DisplayRamp], gain: float) -> tuple[Array, Array]:
     """Logs (people,) of the size that is reported in half of the trials, and of the SD of the function, guesses out."""
     from ..kernels.crossing import psychometric
 
-    reported = np.stack([Played.of(laboratory, ramp).reported(gain) for ramp in ramps], axis=1)
+    reported = np.stack([Stimulated.of(laboratory, ramp).reported(gain) for ramp in ramps], axis=1)
     logs = np.empty((reported.shape[0], len(HALVES)))
     psychometric(reported, np.log([ramp.size_K for ramp in ramps]), np.array(HALVES), logs)
     sizes = np.exp(logs)

@@ -14,7 +14,7 @@ from functools import cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from thermicon.circuit.records import Table
+from thermicon.circuit.records import RecordTable
 
 from ..arrays import Array
 from ..kernels.parallel import in_order
@@ -74,7 +74,7 @@ def latin(parameters: int, draws: int, seed: int) -> Array:
     return np.asarray((strata + rng.random(strata.shape)) / draws)
 
 
-def memory_parameters(norm: Norm, records: Table | None = None) -> tuple[Uncertain, ...]:
+def memory_parameters(norm: Norm, records: RecordTable | None = None) -> tuple[Uncertain, ...]:
     """The uncertain constants of memory that a norm makes use of, by the records of an observer (None: the shipped).
 
     >>> [parameter.name for parameter in memory_parameters("episodes")]

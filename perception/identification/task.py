@@ -13,7 +13,7 @@ from statistics import NormalDist
 import numpy as np
 
 from thermicon.circuit import Rig
-from thermicon.circuit.records import Record, Table
+from thermicon.circuit.records import Record, RecordTable
 from thermicon.icons.model.arguments import checked
 
 from ..arrays import Array
@@ -31,7 +31,7 @@ LOG_NOISE = (math.log(1e-3), math.log(20.0))
 """Logs of the least and largest noise that is tried."""
 
 
-def memory_noise(known: Table, observer: Observer) -> Record:
+def memory_noise(known: RecordTable, observer: Observer) -> Record:
     """Memory noise at which the rate task comes out as published."""
     fraction = known.one("rate Weber fraction")
     rates, spans = known.one("rate of the rate task").interval, known.one("span of the rate task").interval
@@ -85,7 +85,7 @@ def _noise_of(episodes: Episodes, proportion: float, observer: Observer) -> floa
     return math.exp(float(brentq(missed, low, high, xtol=1e-6)))
 
 
-def _felt(known: Table, observer: Observer) -> Iterator[tuple[Array, Array, float]]:
+def _felt(known: RecordTable, observer: Observer) -> Iterator[tuple[Array, Array, float]]:
     """Cold and warm sensations (2, n_time) of every rate and span of the task, and the step of their clock in s."""
     fraction = known.one("rate Weber fraction").central
     rates, spans = known.one("rate of the rate task").interval, known.one("span of the rate task").interval

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import MISSING, Field, field, fields
 from typing import Any, Generic, NamedTuple, TypeVar
 
-from thermicon.circuit.records import Record, Table
+from thermicon.circuit.records import Record, RecordTable
 
 from .channels import CHANNELS, Channel, Variable, source_of
 
@@ -93,7 +93,7 @@ def quantity_of(name: str) -> tuple[str, str]:
     return (channel, rest) if channel in CHANNELS else ("both", QUANTITIES.get(name, name))
 
 
-def record_of(table: Table, kind: Any, field: str, channel: Channel | None = None) -> Record:
+def record_of(table: RecordTable, kind: Any, field: str, channel: Channel | None = None) -> Record:
     """The record of a field, or of its part for one channel; a `RecordError` names what is missing."""
     (each,) = (one for one in constants_of(kind) if one.name == field)
     return table.one(
@@ -101,7 +101,7 @@ def record_of(table: Table, kind: Any, field: str, channel: Channel | None = Non
     )
 
 
-def values_in(table: Table, kind: Any, variable: Variable) -> dict[str, Any]:
+def values_in(table: RecordTable, kind: Any, variable: Variable) -> dict[str, Any]:
     """Values of a table by name; a variant's own number stands under the quantity's name with the variant's ending.
 
     What is missing is a `RecordError`, but for constants of laboratory tasks and those with a default.

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from thermicon.circuit.records import Table
+from thermicon.circuit.records import RecordTable
 from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array, own_arrays
@@ -93,7 +93,7 @@ class PosteriorDraws:
         low, middle, high = np.quantile(self.values(name), [0.5 - 0.5 * share, 0.5, 0.5 + 0.5 * share]).tolist()
         return low, middle, high
 
-    def table(self, k: int) -> Table:
+    def table(self, k: int) -> RecordTable:
         """The records of the shipped observer with the constants of one draw of the default variant."""
         values, records = self.draw(k), []
         for record in variant_records():
@@ -104,7 +104,7 @@ class PosteriorDraws:
                 method = f"draw {k} of the posterior"
                 record = replace(record, value=values[name], low=None, high=None, method=method)
             records.append(record)
-        return Table(f"draw {k}", tuple(records))
+        return RecordTable(f"draw {k}", tuple(records))
 
     def observer(self, k: int) -> Observer:
         """The observer of one draw."""

@@ -12,25 +12,25 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from thermicon.circuit.records import RecordError, Table, load_records
+from thermicon.circuit.records import RecordError, RecordTable, load_records
 
 from .channels import CHANNELS, NORMS, VARIABLES, Channel, Norm, Variable, check_variable, source_of
 from .constants import fields_from, objection_to, values_in, values_of
 from .mechanisms.adaptation import Adaptation
 from .mechanisms.age import Age
+from .mechanisms.bounds import Bounds
 from .mechanisms.conduction import Conduction
 from .mechanisms.criterion import Criterion
 from .mechanisms.decision import Decision
 from .mechanisms.gain import Gain
 from .mechanisms.labels import Labels
-from .mechanisms.limits import Limits
 from .mechanisms.mechanism import Mechanism
 from .mechanisms.memory import Memory
 from .mechanisms.ratings import Ratings
 from .mechanisms.site import Site
-from .mechanisms.skin import Skin
 from .mechanisms.spreads import Spreads
 from .mechanisms.summation import Summation
+from .mechanisms.tissue import Tissue
 from .mechanisms.transducer import Transducer
 
 __all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "load_thresholds"]
@@ -44,7 +44,7 @@ CURE = (
 
 @dataclass(frozen=True, kw_only=True)
 class Observer(
-    Skin, Adaptation, Limits, Site, Summation, Age, Memory, Ratings, Transducer, Gain,
+    Tissue, Adaptation, Bounds, Site, Summation, Age, Memory, Ratings, Transducer, Gain,
     Criterion, Conduction, Decision, Labels, Spreads, Mechanism,
 ):  # fmt: skip
     """A nominal person: SI units inside, sensation in units of the sensory noise (d′).
@@ -117,7 +117,7 @@ class Observer(
         return _shipped(variable) if path is None else cls.from_table(read_records(Path(path)), variable=variable)
 
     @classmethod
-    def from_table(cls, table: Table, *, variable: Variable = "temperature") -> Observer:
+    def from_table(cls, table: RecordTable, *, variable: Variable = "temperature") -> Observer:
         """Build from calibrated records; a missing one is a `RecordError` that names it."""
         try:
             return cls.from_values(values_in(table, cls, check_variable(variable)), variable)
@@ -148,18 +148,18 @@ MECHANISMS = tuple(kind for kind in Observer.__mro__ if issubclass(kind, Mechani
 
 
 @lru_cache(maxsize=1)
-def load_thresholds() -> Table:
+def load_thresholds() -> RecordTable:
     """The shipped table of published numbers."""
     return load_records(DATA / "thresholds.toml")
 
 
 @lru_cache(maxsize=1)
-def observer_records() -> Table:
+def observer_records() -> RecordTable:
     """The records of the shipped observer and of how people differ."""
     return load_records(DATA / "observer.toml")
 
 
-def read_records(path: Path) -> Table:
+def read_records(path: Path) -> RecordTable:
     """Records of an observer's file; a RecordError where a quantity has another unit than the shipped one."""
     table = load_records(path)
     shipped = {record.quantity: record.unit for record in observer_records()}
@@ -174,12 +174,12 @@ def read_records(path: Path) -> Table:
 
 
 @lru_cache(maxsize=4)
-def variant_records(variable: Variable = "temperature") -> Table:
+def variant_records(variable: Variable = "temperature") -> RecordTable:
     """The shipped records without those of other variants: all that an observer of this variant makes use of."""
     variant = source_of(variable)
     others = tuple(ending for each in VARIABLES if (ending := source_of(each)) not in ("", variant))
     shipped = observer_records()
-    return Table(shipped.name, tuple(record for record in shipped if not record.quantity.endswith(others)))
+    return RecordTable(shipped.name, tuple(record for record in shipped if not record.quantity.endswith(others)))
 
 
 @lru_cache(maxsize=2)

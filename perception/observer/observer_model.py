@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Literal, Self, TypedDict, Unpack
 
 from thermicon.circuit.inputs import InputError
-from thermicon.circuit.records import RecordError, Table
+from thermicon.circuit.records import RecordError, RecordTable
 from thermicon.icons.model.arguments import checked
 
 from .channels import CHANNELS, USUAL_NORM, VARIABLES, Norm
@@ -39,7 +39,7 @@ class ObserverModel:
     name: str
     digest: str
     nominal: Observer = field(compare=False)
-    records: Table = field(compare=False)
+    records: RecordTable = field(compare=False)
     posterior: PosteriorDraws | None = field(compare=False)
     age_years: float | None = None
 

@@ -19,7 +19,7 @@ from thermicon.icons.model.arguments import checked
 from ..arrays import Array, own_arrays
 from .channels import CHANNELS, Channel
 from .constants import Both, record_of
-from .mechanisms.skin import depth_keys
+from .mechanisms.tissue import depth_keys
 from .observer import Observer, load_thresholds, observer_records
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from thermicon.circuit.cores import quiet_blas
 from ..arrays import Array
 from ..experiments.measure import Setting
 from .likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights, walk
-from .measurement_likelihood import Emulated, Predicted, log_likelihood, predicted
+from .measurement_likelihood import Emulated, SimulatedMeasurements, log_likelihood, predicted
 from .measurements_file import Measurements
 from .playing import Confusions, Stage
 from .prediction import Fit, MeasurementFit, compare, compare_measurements
@@ -35,7 +35,7 @@ NEAR_ANSWERS, NEAR_VALUES = 2.0, 25.0
 """Ln L by which a laboratory is less likely than those near the data if it counts half in a fit: those far from the
 data keep the polynomial from bending there, and count for little else."""
 Step = Callable[[], None]
-Data: TypeAlias = "Answered | Measured"
+Data: TypeAlias = "Answered | MeasuredValues"
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,7 +205,7 @@ class Answered:
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredValues:
     """Thresholds, reaction times and ratings, which every laboratory measures as well, with one and the same crowd."""
 
     measurements: Measurements
@@ -215,23 +215,23 @@ class Measured:
     rounds: ClassVar[int] = 3
     by_people: ClassVar[bool] = False
 
-    def simulate(self, some: Laboratories, step: Step | None = None) -> Predicted:
+    def simulate(self, some: Laboratories, step: Step | None = None) -> SimulatedMeasurements:
         """Means, covariances and scatter of the values in each laboratory."""
         return predicted(self.prior, some, self.setting, self.measurements.conditions, step)
 
-    def log_likelihood(self, simulated: Predicted) -> Array:
+    def log_likelihood(self, simulated: SimulatedMeasurements) -> Array:
         """Ln likelihood (laboratories,) of all values."""
         return log_likelihood(self.measurements, simulated)
 
-    def polynomial(self, place: Array, simulated: Predicted, short: Array) -> Callable[[Array], Array]:
+    def polynomial(self, place: Array, simulated: SimulatedMeasurements, short: Array) -> Callable[[Array], Array]:
         """Ln likelihood with polynomials for means, covariances and scatter."""
         return Emulated.fit(self.measurements, place, simulated, 1.0 / (1.0 + short / NEAR_VALUES))
 
-    def compare(self, simulated: Predicted, seed: int) -> MeasurementFit:
+    def compare(self, simulated: SimulatedMeasurements, seed: int) -> MeasurementFit:
         """Group means beside those of the same measurements in these laboratories."""
         return compare_measurements(self.measurements, simulated, seed=seed)
 
-    def details(self, simulated: Predicted) -> Array:
+    def details(self, simulated: SimulatedMeasurements) -> Array:
         """Log means (laboratories, conditions)."""
         return simulated.mean
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from thermicon.circuit.records import Record, Table, dump_records
+from thermicon.circuit.records import Record, RecordTable, dump_records
 
 from ..arrays import Array
 from ..observer.constants import BETWEEN_LABORATORIES, name_of, names_of
@@ -77,7 +77,7 @@ def laboratory_texts(draws: PosteriorDraws, version: str, provenance: Sequence[s
     head = (f"Observer of one laboratory, written by thermicon pilot ({version}).", *provenance)
     first, rest = to_text(draws.header, columns, values).split("\n", 1)
     table = "\n".join([first, *(f"# {line}" for line in (*provenance, OF_SOURCE)), rest])
-    return dump_records(Table("laboratory", records), comment="\n".join(head)), table
+    return dump_records(RecordTable("laboratory", records), comment="\n".join(head)), table
 
 
 def _narrowed(record: Record, each: Mapping[str, Array], remembered: Sequence[str]) -> Record:

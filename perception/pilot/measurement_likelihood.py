@@ -88,7 +88,9 @@ def log_errors(measured: Measurements, within: Array) -> Array:
     return _errors(measured.errors / measured.values, measured.trials, within)
 
 
-def log_likelihood(measured: Measurements, each: Predicted, groups: tuple[Group, ...] | None = None) -> Array:
+def log_likelihood(
+    measured: Measurements, each: SimulatedMeasurements, groups: tuple[Group, ...] | None = None
+) -> Array:
     """Ln likelihood (laboratories,) of all values, up to a constant."""
     shared, spread = shared_covariance(measured), person_covariance(measured, each.between)
     count = len(shared)
@@ -129,7 +131,7 @@ class Emulated:
     pairs: tuple[tuple[int, int], ...]
 
     @classmethod
-    def fit(cls, measured: Measurements, place: Array, each: Predicted, weight: Array) -> Emulated:
+    def fit(cls, measured: Measurements, place: Array, each: SimulatedMeasurements, weight: Array) -> Emulated:
         """Fit to simulated laboratories, each of which counts by its `weight` (n,)."""
         targets, own = _flat(each), weight / weight.mean()
         features, pairs, _ = smooth_features(place, targets / targets.std(axis=0).clip(1e-9), own)
@@ -141,7 +143,7 @@ class Emulated:
         return log_likelihood(self.measured, each, self.groups)
 
 
-def _flat(each: Predicted) -> Array:
+def _flat(each: SimulatedMeasurements) -> Array:
     """Means, logs of scatter, and the logarithmic Cholesky factor of Σ: numbers without bounds."""
     root = np.linalg.cholesky(each.between + NUGGET * np.eye(each.mean.shape[1]))
     rows, columns = np.tril_indices(each.mean.shape[1], -1)
@@ -149,17 +151,17 @@ def _flat(each: Predicted) -> Array:
     return np.hstack([each.mean, np.log(each.within), diagonal, root[:, rows, columns]])
 
 
-def _predicted(flat: Array, count: int) -> Predicted:
+def _predicted(flat: Array, count: int) -> SimulatedMeasurements:
     rows, columns = np.tril_indices(count, -1)
     mean, within, diagonal, below = (flat[:, a:b] for a, b in pairwise((0, count, 2 * count, 3 * count, flat.shape[1])))
     root = np.zeros((len(flat), count, count))
     root[:, range(count), range(count)] = np.exp(np.clip(diagonal, -8.0, 3.0))
     root[:, rows, columns] = below
-    return Predicted(mean, root @ np.swapaxes(root, 1, 2), np.exp(np.clip(within, -8.0, 3.0)))
+    return SimulatedMeasurements(mean, root @ np.swapaxes(root, 1, 2), np.exp(np.clip(within, -8.0, 3.0)))
 
 
 @dataclass(frozen=True, slots=True)
-class Predicted:
+class SimulatedMeasurements:
     """Logs of people's values in laboratories: `mean` (laboratories, conditions), `between`, the covariance of people
     (laboratories, conditions, conditions), and `within` (laboratories, conditions), the SD of one trial.
     """
@@ -168,14 +170,14 @@ class Predicted:
     between: Array
     within: Array
 
-    def of(self, which: NDArray[np.int64]) -> Predicted:
+    def of(self, which: NDArray[np.int64]) -> SimulatedMeasurements:
         """Those of some laboratories."""
-        return Predicted(self.mean[which], self.between[which], self.within[which])
+        return SimulatedMeasurements(self.mean[which], self.between[which], self.within[which])
 
-    def joined(self, other: Predicted) -> Predicted:
+    def joined(self, other: SimulatedMeasurements) -> SimulatedMeasurements:
         """These and those of further laboratories."""
         pairs = zip((self.mean, self.between, self.within), (other.mean, other.between, other.within), strict=True)
-        return Predicted(*(np.concatenate(pair) for pair in pairs))
+        return SimulatedMeasurements(*(np.concatenate(pair) for pair in pairs))
 
 
 def measuring(
@@ -193,7 +195,7 @@ def predicted(
     setting: Setting,
     conditions: Sequence[Condition],
     step: Callable[[], None] | None = None,
-) -> Predicted:
+) -> SimulatedMeasurements:
     """Predict conditions in laboratories, with the same crowd in each; `step` is called after each."""
     values = prior.values(some)
 
@@ -208,4 +210,4 @@ def predicted(
         found.append(each)
         if step is not None:
             step()
-    return Predicted(*(np.stack([parts[k] for parts in found]) for k in range(3)))
+    return SimulatedMeasurements(*(np.stack([parts[k] for parts in found]) for k in range(3)))

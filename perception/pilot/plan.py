@@ -40,7 +40,7 @@ FEWEST = 2
 
 
 @dataclass(frozen=True, slots=True)
-class Design:
+class ExperimentSize:
     """An experiment of so many participants and trials (each, of each set), and what it is expected to give.
 
     `width` is that of the 95 % interval of the proportion correct, or of the difference of two sets, which a share
@@ -60,7 +60,7 @@ class Design:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan(Tabled):
+class ExperimentPlan(Tabled):
     """Designs that were simulated, and the one to take.
 
     Attributes
@@ -77,7 +77,7 @@ class Plan(Tabled):
 
     predictions: tuple[SetPrediction, ...]
     difference: Three | None
-    designs: tuple[Design, ...]
+    designs: tuple[ExperimentSize, ...]
     wanted: float
     rig: str
     rig_changes: tuple[str, ...]
@@ -86,12 +86,12 @@ class Plan(Tabled):
     draws: int
     version: str
 
-    def enough(self, design: Design) -> bool:
+    def enough(self, design: ExperimentSize) -> bool:
         """Whether a design gives what was asked for."""
         return design.width <= self.wanted if design.found is None else design.found >= self.wanted
 
     @property
-    def cheapest(self) -> Design | None:
+    def cheapest(self) -> ExperimentSize | None:
         """The design of the fewest trials that gives what was asked for, of equal ones that of fewer participants."""
         good = [each for each in self.designs if self.enough(each)]
         return min(good, key=lambda each: (each.participants * each.trials, each.participants)) if good else None
@@ -124,7 +124,7 @@ class Plan(Tabled):
         return json.dumps(self.to_dict(), ensure_ascii=False, indent=1)
 
     def __repr__(self) -> str:
-        return f"Plan({len(self.designs)} designs, the cheapest {self.cheapest})"
+        return f"ExperimentPlan({len(self.designs)} designs, the cheapest {self.cheapest})"
 
 
 @checked
@@ -140,7 +140,7 @@ def plan(
     draws: int = DRAWS,
     progress: Progress | None = None,
     **words: Unpack[CrowdWords],
-) -> Plan:
+) -> ExperimentPlan:
     """Simulate experiments of several sizes.
 
     Parameters
@@ -164,7 +164,7 @@ def plan(
 
     Returns
     -------
-    Plan
+    ExperimentPlan
         The same numbers for the same arguments.
 
     Raises
@@ -199,7 +199,7 @@ def plan(
         for j, times in enumerate(trials):
             designs.append(_simulated(played, people, times, np.random.SeedSequence([seed, 24, k, j])))
             step()
-    return Plan(
+    return ExperimentPlan(
         predictions=tuple(SetPrediction.of(each.title, one) for each, one in zip(sets, played, strict=True)),
         difference=None if apart is None else three(apart),
         designs=tuple(designs),
@@ -226,11 +226,11 @@ def _check(participants: Sequence[int], trials: Sequence[int], wanted: float | N
         raise ValueError(f"at least {LEAST_DRAWS} draws are needed, not {draws}")
 
 
-def _simulated(played: Sequence[Confusions], people: int, trials: int, stream: np.random.SeedSequence) -> Design:
+def _simulated(played: Sequence[Confusions], people: int, trials: int, seed: np.random.SeedSequence) -> ExperimentSize:
     """One size of experiment, simulated in one laboratory after the other."""
     from scipy.stats import t
 
-    rng = np.random.default_rng(stream)
+    rng = np.random.default_rng(seed)
     laboratories, crowd = played[0].probability.shape[:2]
     where = np.arange(EXPERIMENTS) % laboratories
     invited = rng.integers(crowd, size=(EXPERIMENTS, people))
@@ -240,11 +240,11 @@ def _simulated(played: Sequence[Confusions], people: int, trials: int, stream: n
     if len(shares) == 1:
         middle = each.mean(axis=1)
         width = np.minimum(middle + half, 1.0) - np.maximum(middle - half, 0.0)
-        return Design(people, trials, float(width.mean()))
+        return ExperimentSize(people, trials, float(width.mean()))
     truth = (played[0].correct - played[1].correct)[where]
     shown = np.abs(each.mean(axis=1)) > half
     right = np.sign(each.mean(axis=1)) == np.sign(truth)
-    return Design(
+    return ExperimentSize(
         people, trials, float(2.0 * half.mean()), float((shown & right).mean()), float((shown & ~right).mean())
     )
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..experiments.measure import Condition
-from .measurement_likelihood import Predicted, log_errors, person_covariance, shared_covariance
+from .measurement_likelihood import SimulatedMeasurements, log_errors, person_covariance, shared_covariance
 from .measurements_file import Measurements
 from .playing import Confusions
 from .trials import Trials, plugin_information
@@ -216,7 +216,7 @@ def _pairs(trials: Trials, seen: Array, pooled: Array) -> list[PairFit]:
     return found
 
 
-def compare_measurements(measured: Measurements, each: Predicted, *, seed: int = 0) -> MeasurementFit:
+def compare_measurements(measured: Measurements, each: SimulatedMeasurements, *, seed: int = 0) -> MeasurementFit:
     """Compare measurements with the same ones simulated in the laboratories of a prediction."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, 32]))
     there, shared = measured.given, np.linalg.cholesky(shared_covariance(measured))

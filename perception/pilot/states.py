@@ -13,7 +13,7 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
-from thermicon.circuit.records import Table
+from thermicon.circuit.records import RecordTable
 
 from ..arrays import Array
 from ..identification.laboratory_draws import Uncertain, latin, memory_parameters
@@ -55,7 +55,7 @@ class LaboratoryPrior:
     Memory that the draws have themselves is kept with their constants, on the scale of its shipped interval.
     """
 
-    def __init__(self, draws: PosteriorDraws, norm: Norm, records: Table | None = None) -> None:
+    def __init__(self, draws: PosteriorDraws, norm: Norm, records: RecordTable | None = None) -> None:
         self.draws, self.norm = draws, norm
         own = [each for each in memory_parameters(norm) if each.name in draws.memory_names]
         free = [each for each in memory_parameters(norm, records=records) if each.name not in draws.memory_names]

@@ -12,7 +12,7 @@ from functools import lru_cache
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
-from thermicon.circuit.records import Record, Table, load_records
+from thermicon.circuit.records import Record, RecordTable, load_records
 from thermicon.circuit.rig.skin import STRATUM_CORNEUM
 from thermicon.icons.number_text import significant
 
@@ -76,7 +76,7 @@ class RuleResult:
 
 
 @lru_cache(maxsize=1)
-def load_rules() -> Table:
+def load_rules() -> RecordTable:
     """The rules as records; `statement`, `scope` and `basis` say what each is about."""
     return load_records(DATA / "rules.toml", extra=("statement", "scope", "basis"))
 
@@ -181,7 +181,7 @@ def _felt_peak(record: Record, channel: Channel, lead: float) -> RuleResult:
     return _result(record, channel, margin > 0, lead, margin, record.central, text)
 
 
-def _onset(table: Table, a: Trace, b: Trace) -> RuleResult:
+def _onset(table: RecordTable, a: Trace, b: Trace) -> RuleResult:
     first, second = first_passing(a), first_passing(b)
     both_warm = first is not None and second is not None and first[1] == second[1] == "warm"
     channel: Channel = "warm" if both_warm else "cold"

@@ -21,14 +21,14 @@ MOST_STEPS = 20_000
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class Totals:
     """Totals that the chosen must keep: `costs` (limits, things), each row's sum at most its `most`."""
 
     costs: Array
     most: tuple[float, ...]
 
     @classmethod
-    def none(cls, things: int) -> Limits:
+    def none(cls, things: int) -> Totals:
         """No limit at all."""
         return cls(np.empty((0, things)), ())
 
@@ -59,7 +59,7 @@ class SubsetChoice:
 
 
 def max_min_subset(
-    distances: ArrayLike, count: int, must: Sequence[int] = (), limits: Limits | None = None
+    distances: ArrayLike, count: int, must: Sequence[int] = (), limits: Totals | None = None
 ) -> SubsetChoice | None:
     """Choose the `count` of n things, `must` among them, whose nearest pair is farthest apart; None: none fits limits.
 
@@ -71,7 +71,7 @@ def max_min_subset(
     ((0, 2), 4.0, True)
     """
     d = np.array(distances, dtype=np.float64)
-    return _Bisection(d, count, tuple(must), limits or Limits.none(len(d))).best()
+    return _Bisection(d, count, tuple(must), limits or Totals.none(len(d))).best()
 
 
 def nearest_pair(distances: Array, chosen: Sequence[int]) -> float:
@@ -81,7 +81,7 @@ def nearest_pair(distances: Array, chosen: Sequence[int]) -> float:
 
 
 class _Bisection:
-    def __init__(self, d: Array, count: int, must: tuple[int, ...], limits: Limits) -> None:
+    def __init__(self, d: Array, count: int, must: tuple[int, ...], limits: Totals) -> None:
         self.d, self.count, self.must, self.limits = d, count, must, limits
         self.thresholds = 0
 
@@ -157,7 +157,7 @@ class _Bisection:
         if left is None:
             return None
         self.thresholds += 1
-        limits = Limits(self.limits.costs[:, left], self.limits.most)
+        limits = Totals(self.limits.costs[:, left], self.limits.most)
         must = np.flatnonzero(np.isin(left, self.must)).tolist()
         clique = find_clique(compatible[np.ix_(left, left)], self.count, must, limits)
         return None if clique is None else tuple(left[list(clique)].tolist())
@@ -174,7 +174,7 @@ class _Bisection:
 
 
 def find_clique(
-    compatible: NDArray[np.bool_], size: int, must: Sequence[int], limits: Limits
+    compatible: NDArray[np.bool_], size: int, must: Sequence[int], limits: Totals
 ) -> tuple[int, ...] | None:
     """`size` mutually compatible things that contain `must` and keep the limits; None where there are none.
 

@@ -19,7 +19,7 @@ from ..sensation.detection import detect
 from ..sensation.percept import perceive_many
 from ..sensation.received import received, uniform_clock
 from .goal import SAFETY, Goal
-from .max_min_subset import Limits
+from .max_min_subset import Totals
 from .request import ChoiceError, Selection, check_selection, too_few
 
 if TYPE_CHECKING:
@@ -101,11 +101,11 @@ class Pool:
         names = [[trace.icon or "" for trace in pool.traces] for pool in (self, kept)]
         return dprimes_from_memory(one, other, self.dt_s, observer, norm, (names[0], names[1]))
 
-    def limits(self, most_s: float | None, most_J: float | None) -> Limits:
+    def limits(self, most_s: float | None, most_J: float | None) -> Totals:
         """The totals that a choice must keep, as costs of every icon."""
         rows = [(self.durations_s, most_s)] * (most_s is not None) + [(self.energies_J, most_J)] * (most_J is not None)
         costs = np.array([each for each, _ in rows]).reshape(-1, len(self))
-        return Limits(costs, tuple(most for _, most in rows if most is not None))
+        return Totals(costs, tuple(most for _, most in rows if most is not None))
 
     def totals_text(self, count: int, most_s: float | None, most_J: float | None) -> str:
         """The totals that a choice must keep, each with the least that so many icons take."""

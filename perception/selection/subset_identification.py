@@ -20,7 +20,7 @@ from thermicon.circuit.cores import quiet_blas
 
 from ..arrays import Array
 from ..identification.confusion import embed
-from .max_min_subset import Limits, SubsetChoice, max_min_subset
+from .max_min_subset import SubsetChoice, Totals, max_min_subset
 from .request import Objective
 
 PEOPLE = 24
@@ -206,7 +206,7 @@ class SubsetIdentification:
                 found[place, others] = self.replaced(chosen, place, others.tolist(), objective)
         return found
 
-    def enumerated(self, count: int, objective: Objective, must: Sequence[int], limits: Limits) -> SubsetChoice | None:
+    def enumerated(self, count: int, objective: Objective, must: Sequence[int], limits: Totals) -> SubsetChoice | None:
         """The best of all subsets that hold `must` and keep the limits.
 
         All that share all but their last icon are scored together.
@@ -236,11 +236,11 @@ def pick(
     count: int,
     objective: Objective,
     must: Sequence[int] = (),
-    limits: Limits | None = None,
+    limits: Totals | None = None,
     seed: int = 0,
 ) -> SubsetChoice | None:
     """The best `count` by one objective: of median d′ (n, n) for `worst`, else of the namings; None: no choice fits."""
-    within = limits or Limits.none(len(middle))
+    within = limits or Totals.none(len(middle))
     if namings is None or objective == "worst":
         return max_min_subset(middle, count, must, within)
     if math.comb(len(middle) - len(must), count - len(must)) <= MOST_SUBSETS:
@@ -254,7 +254,7 @@ def _climbed(
     count: int,
     objective: Objective,
     must: Sequence[int],
-    limits: Limits,
+    limits: Totals,
     seed: int,
 ) -> SubsetChoice | None:
     """The best of the widest choice and of random ones, each improved by single swaps until none helps."""
@@ -291,7 +291,7 @@ def climb(
     objective: Objective,
     middle: Array,
     must: Sequence[int],
-    limits: Limits,
+    limits: Totals,
 ) -> tuple[list[int], float, int]:
     """Single swaps that improve an objective until none does: the places, their score, and how many were tried."""
     chosen, score, tried = list(start), namings.score(start, objective), 0

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.circuit.records import Record, Table, load_records
+from thermicon.circuit.records import Record, RecordTable, load_records
 from thermicon.icons.number_text import significant
 
 from ..arrays import Array
@@ -30,7 +30,7 @@ NEAREST = {
 
 
 @lru_cache(maxsize=1)
-def load_coverage() -> Table:
+def load_coverage() -> RecordTable:
     """The limits as records: `temperature`, `rate` and, one a site, `site`."""
     return load_records(DATA / "coverage.toml", extra=("recorded",))
 

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from tests.builders import messages
-from thermicon.circuit.records import Record, RecordError, Table, dump_records, load_records
+from thermicon.circuit.records import Record, RecordError, RecordTable, dump_records, load_records
 
 GOOD = """
 [[record]]
@@ -28,7 +28,7 @@ tissue = "nerve"
 """
 
 
-def table_of(tmp_path: Path, text: str, *extra: str) -> Table:
+def table_of(tmp_path: Path, text: str, *extra: str) -> RecordTable:
     file = tmp_path / "numbers.toml"
     file.write_text(text, encoding="utf-8")
     return load_records(file, extra=extra)
@@ -69,8 +69,8 @@ def test_look_up_names_the_nearest(tmp_path: Path, asked: str, message: str) -> 
 def test_a_channel_also_finds_what_holds_for_both() -> None:
     both = Record("spread", "1", "norms", value=0.2, channel="both")
     own = Record("spread", "1", "norms", value=0.3, channel="cold")
-    assert Table("t", (both,)).one("spread", channel="warm") is both
-    assert Table("t", (both, own)).one("spread", channel="cold") is own
+    assert RecordTable("t", (both,)).one("spread", channel="warm") is both
+    assert RecordTable("t", (both, own)).one("spread", channel="cold") is own
 
 
 def test_a_record_may_hold_only_further_numbers() -> None:

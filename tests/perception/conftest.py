@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from thermicon.circuit import Trace
 from thermicon.perception import Observer
 from thermicon.perception.observer.constants import Both
-from thermicon.perception.observer.mechanisms.limits import NO_LIMIT_C
+from thermicon.perception.observer.mechanisms.bounds import NO_LIMIT_C
 
 Array = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from thermicon.circuit.solver.modes import thermode_modes
 from thermicon.perception.arrays import Array
 from thermicon.perception.experiments.laboratory import Corner, course_of, load_rig
 from thermicon.perception.observer.channels import CHANNELS, SIGN, Channel
-from thermicon.perception.observer.mechanisms.limits import NO_LIMIT_C
+from thermicon.perception.observer.mechanisms.bounds import NO_LIMIT_C
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.sensation.detection import detect
 

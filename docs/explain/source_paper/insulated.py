@@ -17,7 +17,7 @@ from thermicon.circuit.arrays import Array, Index
 from thermicon.circuit.cores import quiet_blas
 from thermicon.circuit.records import load_records
 from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.skin import Column, column_of
+from thermicon.circuit.rig.skin import SkinColumn, column_of
 from thermicon.circuit.solver.modes import SkinModes
 from thermicon.circuit.solver.probes import reading_of
 from thermicon.circuit.solver.trace import Trace
@@ -106,7 +106,7 @@ def _edges(radius_m: float) -> Array:
     return np.concatenate([inside[:-1], [radius_m], radius_m + outside])
 
 
-def _reading(rig: Rig, column: Column, pad: Pad, centre: Array) -> tuple[Array, float]:
+def _reading(rig: Rig, column: SkinColumn, pad: Pad, centre: Array) -> tuple[Array, float]:
     """Weights in a reading of all cells, and of the display: linear in thermal resistance and in r²."""
     resistance = column.resistance_m2K_per_W.copy()
     resistance[0] += pad.insulation_m2K_per_W
@@ -124,7 +124,7 @@ def _reading(rig: Rig, column: Column, pad: Pad, centre: Array) -> tuple[Array, 
     return np.outer(depth[1:-1], radial).ravel(), float(depth[0])
 
 
-def _conductance_along(rig: Rig, column: Column) -> Array:
+def _conductance_along(rig: Rig, column: SkinColumn) -> Array:
     """Conductivity times height, k·dz in W/K, of the tissue of each lump."""
     depth, layers = column.depth_m, rig.skin.layers
     if rig.skin.elements is None:

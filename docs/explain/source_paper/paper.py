@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from thermicon.circuit.arrays import Array
-from thermicon.circuit.records import Table, load_records
+from thermicon.circuit.records import RecordTable, load_records
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.simulate import simulate
@@ -34,7 +34,7 @@ THERMISTORS = (("1", "display"), ("2", "interface"))
 
 
 @cache
-def printed() -> Table:
+def printed() -> RecordTable:
     """Numbers from the paper's text, each with its place."""
     return load_records(Path(__file__).with_name("source-paper.toml"))
 

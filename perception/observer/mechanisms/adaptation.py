@@ -12,11 +12,11 @@ from ...arrays import Array, as_rows
 from ...kernels.parallel import over_rows
 from ..channels import SIGN, Channel
 from ..constants import Both, constant
-from .limits import Limits
+from .bounds import Bounds
 
 
 @dataclass(frozen=True, kw_only=True)
-class Adaptation(Limits):
+class Adaptation(Bounds):
     """Drive is what exceeds a level that follows slowly; outside the neutral zone a hold keeps a residue."""
 
     equation = "dq_i/dt = (q − q_i)/τ_i, dA/dt = (clip(q) − A)/τ_s, drive = max(0, s·(q_i − A))"

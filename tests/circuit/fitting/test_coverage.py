@@ -13,7 +13,7 @@ from thermicon.circuit.fitting.identify import half_width
 from thermicon.circuit.fitting.keys import COMMON, CONTACT, free_keys, value_of
 from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
 from thermicon.circuit.fitting.log import Log
-from thermicon.circuit.fitting.problem import LAYER_KINDS, Problem, layer_priors
+from thermicon.circuit.fitting.problem import LAYER_KINDS, FitProblem, layer_priors
 from thermicon.circuit.fitting.runs import runs_of
 from thermicon.circuit.fitting.solve import covariance_of
 from thermicon.circuit.solver.batch_inputs import bank_of, run_regulate
@@ -85,7 +85,7 @@ def logged(
 def bound(log: Log, rig: Rig, truth: dict[str, float]) -> float:
     """Half width of contact that the log allows at best, at the truth and with the noise that is true."""
     start = rig.with_(**truth)
-    problem = Problem.of(start, free_keys(COMMON, start), runs_of([log], start))
+    problem = FitProblem.of(start, free_keys(COMMON, start), runs_of([log], start))
     sigma = [NOISE[channel.column[-1]] for _, _, channel in problem.channels()]
     deviations = covariance_of(problem, problem.jacobian(problem.first, sigma), [1.0] * len(sigma))
     return half_width(True, math.sqrt(deviations[0, 0]))

@@ -12,11 +12,11 @@ from thermicon.circuit import Device, Drive, Gate, Rig, export, fit, simulate, s
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.device import device_names
 from thermicon.circuit.delivery.formats import format_names, load_format
-from thermicon.circuit.fitting.identify import Parameter, cures, identified
+from thermicon.circuit.fitting.identify import FittedParameter, cures, identified
 from thermicon.circuit.fitting.keys import COMMON, CONTACT, free_keys
 from thermicon.circuit.fitting.laboratory import calibration_icon, plan, synthetic_log
 from thermicon.circuit.fitting.log import Log, read_log
-from thermicon.circuit.fitting.problem import LAYER_KINDS, Problem, changed_layers
+from thermicon.circuit.fitting.problem import LAYER_KINDS, FitProblem, changed_layers
 from thermicon.circuit.fitting.rig_fit import RigFit
 from thermicon.circuit.fitting.runs import runs_of
 from thermicon.circuit.fitting.solve import Solution, spreads
@@ -72,13 +72,13 @@ def test_layers_times_factors_are_what_a_log_sees_of_other_layers(thenar: Rig, l
 
 
 def test_the_error_of_the_mesh_is_some_millikelvin(thenar: Rig, log: Log) -> None:
-    problem = Problem.of(thenar, free_keys([CONTACT], thenar), runs_of([log]))
+    problem = FitProblem.of(thenar, free_keys([CONTACT], thenar), runs_of([log]))
     display, voltage, rest = np.split(problem.mesh_error(problem.first, [1.0, 1.0]), [1201, 2402])
     assert 5e-4 < np.abs(display).max() < 5e-3 and np.abs(voltage).max() < 1e-3 and not rest.any()
     beyond = problem.residuals(problem.first + 50.0, [1.0, 1.0])  # no rig has a contact of e⁵⁰
     assert beyond.shape == (2402 + len(rest),) and beyond.min() > 100
     own = Rig.load("shani2021")
-    stated = Problem.of(own, free_keys([CONTACT], own), runs_of([log]))
+    stated = FitProblem.of(own, free_keys([CONTACT], own), runs_of([log]))
     assert not stated.mesh_error(stated.first, spreads(stated, stated.first)).any()
 
 
@@ -115,27 +115,27 @@ def test_rounding_is_noise_and_a_truth_out_of_reach_is_not_known(log: Log, thena
     coarse, fine = (fit(each, thenar, free=list(TRUTH), fixed_skin=True) for each in (rounded, log))
     assert coarse[CONTACT].low < TRUTH[CONTACT] < coarse[CONTACT].high
     assert coarse[CONTACT].half_width > 2 * fine[CONTACT].half_width
-    far = Problem.of(true_rig, free_keys(["skin.rest_C"], true_rig), runs_of([log]))
+    far = FitProblem.of(true_rig, free_keys(["skin.rest_C"], true_rig), runs_of([log]))
     for share, known in ((0.999, False), (0.99, True), (-0.999, False), (-0.99, True)):
         theta = far.first.copy()
         theta[0] += share * (far.bounds[1][0] - theta[0])
         small = Solution(theta, 1e-6 * np.eye(len(theta)), (0.02, 0.005), (1.0, 1.0), True)
         (item,), _ = identified(far, small, true_rig)
         assert item.identified is known and bool(item.cure) is not known, share
-    contact = Problem.of(true_rig, free_keys([CONTACT], true_rig), runs_of([log]))
+    contact = FitProblem.of(true_rig, free_keys([CONTACT], true_rig), runs_of([log]))
     for sd, known in ((0.3, True), (0.4, False)):  # fitted a third as large, and known to its own size or not
         less = Solution(
             contact.first - math.log(3.0), sd**2 * np.eye(len(contact.first)), (0.02, 0.005), (1.0, 1.0), True
         )
         (item,), _ = identified(contact, less, true_rig)
         assert (item.identified, item.interval != "unknown") == (known, known), sd
-    wide = Parameter("a", "a", "", 1.0, 1.0, 0.5, 2.0, True, True)
+    wide = FittedParameter("a", "a", "", 1.0, 1.0, 0.5, 2.0, True, True)
     assert (wide.half_width, replace(wide, low=0.9, high=1.05).half_width) == pytest.approx((1.0, 0.1))
 
 
 def test_a_pair_is_named_from_a_correlation_of_nine_tenths_on(log: Log, thenar: Rig) -> None:
     keys = free_keys(["ambient.temperature_C", "skin.rest_C"], thenar)
-    problem = Problem.of(thenar, keys, runs_of([log]))
+    problem = FitProblem.of(thenar, keys, runs_of([log]))
     for size, named in ((0.85, False), (0.95, True), (-0.95, True)):
         pair = np.array([[1.0, size], [size, 1.0]])
         assert ("cannot be separated from skin at rest" in cures(problem, problem.first, [0], pair)[0]) is named

@@ -14,7 +14,7 @@ from thermicon.circuit.fitting.keys import FitError, fittable, free_keys, value_
 from thermicon.circuit.fitting.laboratory import write_log
 from thermicon.circuit.fitting.log import Log, LogError, read_log
 from thermicon.circuit.fitting.overlay import aligned, check_clocks, check_sensors
-from thermicon.circuit.fitting.problem import Problem
+from thermicon.circuit.fitting.problem import FitProblem
 from thermicon.circuit.fitting.runs import runs_of
 
 from .conftest import altered
@@ -116,8 +116,8 @@ def test_logs_without_a_drive_or_without_a_sensor(thenar: Rig) -> None:
     assert (run.clocks, run.channels[0].clock) == (("meter.csv",), 1)
 
 
-def problem_of(log: Log, rig: Rig) -> Problem:
-    return Problem.of(rig, free_keys(CONTACT, rig), runs_of([log]))
+def problem_of(log: Log, rig: Rig) -> FitProblem:
+    return FitProblem.of(rig, free_keys(CONTACT, rig), runs_of([log]))
 
 
 @pytest.mark.parametrize("part", [slice(None), slice(200, 700)])
@@ -204,7 +204,7 @@ def test_half_of_what_a_thermometer_read_must_lie_within_the_run(
 
 
 def test_a_clock_of_another_rate_is_named(thenar: Rig) -> None:
-    problem = Problem.of(thenar, free_keys(CONTACT, thenar), runs_of([ALONE, METER]))
+    problem = FitProblem.of(thenar, free_keys(CONTACT, thenar), runs_of([ALONE, METER]))
     drift = [item.kind for item in problem.unknowns].index("drift")
     theta = problem.first.copy()
     theta[drift] = 0.0019

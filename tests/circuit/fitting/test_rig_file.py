@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from thermicon.circuit import Rig, fit
-from thermicon.circuit.fitting.identify import Parameter
+from thermicon.circuit.fitting.identify import FittedParameter
 from thermicon.circuit.fitting.keys import FitError, free_keys, value_of
 from thermicon.circuit.fitting.laboratory import synthetic_log, write_log
 from thermicon.circuit.fitting.log import Log
@@ -85,7 +85,7 @@ def test_after_a_misfit_the_rig_holds_all_that_it_held_before(
     key: str, ends: tuple[float, float, float], known: bool, width: float, thenar: Rig
 ) -> None:
     low, value, high = ends
-    item = Parameter(key, "", "", value_of(thenar, key), value, low, high, key.startswith("contact"), known)
+    item = FittedParameter(key, "", "", value_of(thenar, key), value, low, high, key.startswith("contact"), known)
     stated = uncertainties(free_keys([key], thenar), [item], before=thenar.uncertainty, misfit=True)
     assert list(stated.values()) == [width]
 

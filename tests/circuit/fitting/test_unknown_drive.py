@@ -9,7 +9,7 @@ from thermicon.circuit.fitting.forward import steady_level
 from thermicon.circuit.fitting.keys import COMMON, CONTACT, FitError, free_keys
 from thermicon.circuit.fitting.laboratory import synthetic_log
 from thermicon.circuit.fitting.log import Log, LogError
-from thermicon.circuit.fitting.problem import Problem
+from thermicon.circuit.fitting.problem import FitProblem
 from thermicon.circuit.fitting.runs import runs_of
 from thermicon.circuit.fitting.whiten import shared
 
@@ -109,7 +109,7 @@ def test_without_a_current_the_display_is_the_drive(skin: Log, thenar: Rig) -> N
     assert found.notes[0] == "no keys were named; the logs tell best contact.resistance_m2K_per_W"
     assert found[CONTACT].low < TRUTH[CONTACT] < found[CONTACT].high and found[CONTACT].half_width < 0.3
     assert any(note.startswith("the display is the drive: contact and") for note in found.notes)
-    problem = Problem.of(thenar, free_keys([CONTACT], thenar, True), runs_of([alone], thenar))
+    problem = FitProblem.of(thenar, free_keys([CONTACT], thenar, True), runs_of([alone], thenar))
     assert [item.sd for item in problem.unknowns if item.kind == "offset"] == pytest.approx([0.1 * 2**0.5])  # of both
     with pytest.raises(FitError, match=r"seebeck_V_per_K: no log has a current, so that the display is the drive, and"):
         fit(alone, thenar, free=[COMMON[1]])

@@ -21,7 +21,7 @@ from scipy.special import erf, erfc, erfcx
 
 from thermicon.circuit import Rig
 from thermicon.circuit.rig.parts import Contact
-from thermicon.circuit.rig.skin import CELL_GROWTH, FIRST_CELL_M, Column, Layer, Skin, column_of
+from thermicon.circuit.rig.skin import CELL_GROWTH, FIRST_CELL_M, Layer, Skin, SkinColumn, column_of
 from thermicon.circuit.solver.batch_inputs import Bank, cut, run_forward
 from thermicon.circuit.solver.network import RECORDED, SKIN, Network, network_of, network_on
 from thermicon.circuit.solver.steady import state_under_current
@@ -52,7 +52,7 @@ def uniform(perfusion: float = 0.0, thickness_mm: float = 30.0, deep_C: float = 
     return THENAR.with_(**{"skin.layer": [layer], "skin.deep_C": deep_C, **depths, **changes})
 
 
-def lumps(skin: Skin, fine: int, coarser: float = 1.0) -> Column:
+def lumps(skin: Skin, fine: int, coarser: float = 1.0) -> SkinColumn:
     return column_of(skin, BLOOD, coarser * FIRST_CELL_M / fine, CELL_GROWTH / fine)
 
 
@@ -61,7 +61,7 @@ def circuit(rig: Rig, fine: int, display_is_face: bool = False) -> Network:
     column = lumps(rig.skin, fine)
     if display_is_face:
         rest = (column.depth_m, column.capacity_J_per_m2K, column.perfusion_W_per_m2K, column.resistance_m2K_per_W)
-        column = Column(*(array[1:].copy() for array in rest))
+        column = SkinColumn(*(array[1:].copy() for array in rest))
         rig = replace(rig, contact=Contact(rig.contact.area_m2, 1e-12))
     return network_on(rig, column, rig.deep_C)
 
@@ -109,7 +109,7 @@ def two_bodies(resistance: float, fine: int) -> np.ndarray:
         start = np.delete(start, face)
         start[face] = (upper[-1] * 26 + lower[0] * 32) / both
     n, per = len(capacity), 1 / resistance if resistance else 0.0
-    column = Column(np.arange(n) * 1.0, capacity, np.zeros(n), np.concatenate(between))
+    column = SkinColumn(np.arange(n) * 1.0, capacity, np.zeros(n), np.concatenate(between))
     readings = np.array([face - 1, face - 1]), np.array([[0.0, 1.0, 0.0], [per, -per, 0.0]])
     return played(network_on(skin, column, 32.0), start, 8.0, extra=readings)[len(RECORDED) :]
 

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from tests.notebooks.conftest import Cli
-from thermicon.notebooks.files.trace_files import Curves, LogError, align, differences
+from thermicon.notebooks.files.trace_files import Curves, TraceFileError, align, differences
 
 
 def row(said: Any, name: str) -> list[str]:
@@ -101,7 +101,7 @@ def test_differences_of_known_curves_leave_out_what_was_not_measured() -> None:
     assert (row["column"], row["unit"], row["largest"], row["largest_s"], row["rows"]) == ("skin_C", "K", -4, 2, 3)
     assert row["rms"] == pytest.approx(np.sqrt(25 / 3))
     assert row["mean"] == pytest.approx(-1 / 3)
-    with pytest.raises(LogError, match="no column with values in both"):
+    with pytest.raises(TraceFileError, match="no column with values in both"):
         align(curves("a", [0, 1], skin_C=[np.nan] * 2), curves("b", [0, 1], skin_C=[1.0] * 2))
 
 

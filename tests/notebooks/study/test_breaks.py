@@ -10,19 +10,19 @@ from thermicon.circuit import Drive, Export, Rig, SessionPlan, simulate_current
 from thermicon.circuit.arrays import Array
 from thermicon.circuit.safety.sessionplay import SessionDrive, drive_of, worst_case_of
 from thermicon.icons import load_library
-from thermicon.notebooks.study.judging import Judged, Refused, _extreme, _farthest, judge_sessions
-from thermicon.notebooks.study.schedule import Course, Trial
+from thermicon.notebooks.study.judging import JudgedStudy, StudyRefused, _extreme, _farthest, judge_sessions
+from thermicon.notebooks.study.schedule import Schedule, Trial
 from thermicon.notebooks.study.timing import Gap
 
 GAP_S = 10.0
 COLD, WARM = ("cooling-step", "linear-cooling") * 2, ("warming-step", "linear-warming") * 2
 
 
-def course(label: str, *blocks: tuple[str, ...]) -> Course:
+def course(label: str, *blocks: tuple[str, ...]) -> Schedule:
     rows: list[Trial] = []
     for number, block in enumerate(blocks, 1):
         rows += [Trial(number, len(rows) + k, icon) for k, icon in enumerate(block, 1)]
-    return Course(label, tuple(rows))
+    return Schedule(label, tuple(rows))
 
 
 def drive(order: tuple[str, ...], rig: Rig) -> SessionDrive:
@@ -77,9 +77,9 @@ def test_blocks_from_rest_are_one_run_for_one_block_and_add_up_for_more() -> Non
     assert highest[0] > highest[1] + 0.2
 
 
-def judged(course: Course, rig: Rig) -> Judged:
+def judged(course: Schedule, rig: Rig) -> JudgedStudy:
     judgement = judge_sessions([course], list(load_library("six-icons")), rig, False, GAP_S)
-    return Judged(cast("Export", None), cast("Gap", None), *judgement)
+    return JudgedStudy(cast("Export", None), cast("Gap", None), *judgement)
 
 
 @pytest.fixture(scope="module")
@@ -104,9 +104,9 @@ def test_what_only_a_block_from_rest_exceeds_is_a_caution(between_C: float) -> N
 
 def test_a_block_from_rest_that_is_not_safe_refuses_the_study(between_C: float) -> None:
     rig = sure_rig().with_(**{"safety.skin_lowest_C": between_C, "safety.skin_lowest_soft_C": between_C})
-    with pytest.raises(Refused, match="blocks of participant A, each from rest: NOT SAFE: skin surface reaches"):
+    with pytest.raises(StudyRefused, match="blocks of participant A, each from rest: NOT SAFE: skin surface reaches"):
         judged(course("A", WARM, COLD), rig)
-    with pytest.raises(Refused, match=r"^session of participant A: NOT SAFE: skin surface reaches [^\n]*$"):
+    with pytest.raises(StudyRefused, match=r"^session of participant A: NOT SAFE: skin surface reaches [^\n]*$"):
         judged(course("A", COLD, WARM), rig)
 
 

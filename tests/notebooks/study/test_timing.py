@@ -5,7 +5,7 @@ import pytest
 
 from thermicon.circuit import Device, Rig
 from thermicon.icons import load_library
-from thermicon.notebooks.study.schedule import Course, Pace, Trial, planned_plays
+from thermicon.notebooks.study.schedule import Pace, Schedule, Trial, planned_plays
 from thermicon.notebooks.study.study_file import StudyError, Timing
 from thermicon.notebooks.study.timing import (
     GAPS_S,
@@ -33,7 +33,7 @@ def test_a_derived_gap_is_the_shortest_in_whole_seconds() -> None:
 def test_planned_times_have_landings_gaps_and_breaks() -> None:
     """Practice goes over into the first block; the second begins with a break and a landing."""
     trials = (Trial(0, 0, "glow"), Trial(1, 1, "dip"), Trial(1, 2, "glow"), Trial(2, 3, "dip"))
-    plays = planned_plays(Course("A", trials), {"dip": 3.0, "glow": 3.0}, Pace(30.0, 10.0, 40.0))
+    plays = planned_plays(Schedule("A", trials), {"dip": 3.0, "glow": 3.0}, Pace(30.0, 10.0, 40.0))
     assert [play.onset_s for play in plays] == [30.0, 43.0, 56.0, 59.0 + 40.0 + 30.0]
 
 

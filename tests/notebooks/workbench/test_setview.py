@@ -15,7 +15,7 @@ from thermicon.notebooks import Workbench
 from thermicon.notebooks.cli.improve import chosen
 from thermicon.notebooks.editing.number_literals import CannotEdit, with_edit
 from thermicon.notebooks.workbench.design_model import DesignModel
-from thermicon.notebooks.workbench.live_view import BackgroundWorker, Job, Superseded
+from thermicon.notebooks.workbench.live_view import BackgroundJob, BackgroundWorker, Superseded
 from thermicon.notebooks.workbench.set_model import RankedSet, overlay_frame, rank_set
 from thermicon.notebooks.workbench.set_view import SetView
 from thermicon.perception.observer.observer_model import ObserverModel
@@ -180,7 +180,7 @@ def test_what_cannot_be_ranked_is_said(text: str) -> None:
 def test_the_newest_job_wins_and_nobody_hears_of_the_others() -> None:
     worker, done = BackgroundWorker(), list[str]()
 
-    def slow(job: Job) -> None:
+    def slow(job: BackgroundJob) -> None:
         with pytest.raises(Superseded):
             while True:
                 job.go_on()

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import pytest
 
-from thermicon.circuit.records import Record, RecordError, Table, load_records
+from thermicon.circuit.records import Record, RecordError, RecordTable, load_records
 from thermicon.perception import Observer
 from thermicon.perception.evidence.calibrate import calibrate, to_toml
 from thermicon.perception.evidence.results import load_constants
@@ -26,8 +26,8 @@ def test_predicted_records_and_references_do_not_reach_the_observer() -> None:
         return record if kept else replace(record, value=2.0 * record.central, low=None, high=None)
 
     others = [
-        Table(table.name, tuple(map(moved, table))),
-        Table(table.name, tuple(record for record in table if record.use != "predict")),
+        RecordTable(table.name, tuple(map(moved, table))),
+        RecordTable(table.name, tuple(record for record in table if record.use != "predict")),
     ]
     for other in others:
         assert other != table
@@ -70,7 +70,7 @@ def test_what_the_evidence_does_not_narrow_says_so() -> None:
 
 def test_a_table_without_what_is_needed_is_refused() -> None:
     table = load_thresholds()
-    without = Table(table.name, tuple(r for r in table if r.quantity != "rate Weber fraction"))
+    without = RecordTable(table.name, tuple(r for r in table if r.quantity != "rate Weber fraction"))
     with pytest.raises(RecordError, match=r"thresholds.toml: no quantity 'rate Weber fraction'"):
         calibrate(without)
 

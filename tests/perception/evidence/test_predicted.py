@@ -9,7 +9,7 @@ from thermicon.circuit import Rig
 from thermicon.perception import Observer, confuse
 from thermicon.perception.evidence.baseline import nearer_of
 from thermicon.perception.evidence.predicted import Asked, laboratory_of, plausible_observers, predict
-from thermicon.perception.evidence.targets import Published, Row
+from thermicon.perception.evidence.targets import Published, TargetRow
 from thermicon.perception.experiments.measure import Condition, Setting, logs_of
 from thermicon.perception.identification.skin_alone import SAMPLES, named_by_skin, noise_K, noticed_K
 from thermicon.perception.observer.channels import VARIABLES, Variable
@@ -90,5 +90,5 @@ NUMBER, SPAN = Published("0.91", "us", unit="1", value=0.91), Published("0 to 0.
     ],
 )
 def test_which_is_nearer(rule: str, published: Published, model: float, baseline: float, nearer: str) -> None:
-    row = Row("x", "both", "1", "x", "y", rule, "us", value=1.0 if rule == "above" else 2.0, published="x")
+    row = TargetRow("x", "both", "1", "x", "y", rule, "us", value=1.0 if rule == "above" else 2.0, published="x")
     assert nearer_of(row, model, baseline, published) == nearer

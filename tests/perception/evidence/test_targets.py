@@ -7,7 +7,8 @@ import pytest
 
 from tests.builders import messages
 from thermicon.circuit.records import RecordError
-from thermicon.perception.evidence.targets import Published, Row, combined, load_targets, published_for, read_targets
+from thermicon.perception.evidence import targets
+from thermicon.perception.evidence.targets import Published, TargetRow, combined, load_targets, published_for
 from thermicon.perception.evidence.verdicts import criterion_of_row, judge_row, value_text
 from thermicon.perception.observer.observer import load_thresholds
 
@@ -51,8 +52,8 @@ def test_texts_of_published_numbers() -> None:
     assert texts["reaction time, warm over cold"] == "2.16, fitted"
 
 
-def row(rule: str, value: float | None = None, low: float | None = None, high: float | None = None) -> Row:
-    return Row("time", "cold", "s", "x", "y", rule, "ours", value=value, low=low, high=high, published="time")
+def row(rule: str, value: float | None = None, low: float | None = None, high: float | None = None) -> TargetRow:
+    return TargetRow("time", "cold", "s", "x", "y", rule, "ours", value=value, low=low, high=high, published="time")
 
 
 @pytest.mark.parametrize(("case", "said"), messages(__file__)["rules"].items())
@@ -94,13 +95,13 @@ ROW = '[[target.rows]]\nname = "n"\nexperiment = "x"\nquantity = "q"\nchannel = 
 
 @pytest.mark.parametrize(("added", "message"), messages(__file__)["targets"].items())
 def test_a_wrong_target_is_named(added: str, message: str) -> None:
-    assert read_targets(TARGET + ROW + 'rule = "shown"')[0].rows[0].name == "n"
+    assert targets.read_targets(TARGET + ROW + 'rule = "shown"')[0].rows[0].name == "n"
     with pytest.raises(RecordError, match=message):
-        read_targets(TARGET + added.replace("ROW ", ROW))
+        targets.read_targets(TARGET + added.replace("ROW ", ROW))
 
 
 def test_a_published_number_that_is_not_there_is_named() -> None:
-    many = Row("limits", "cold", "K", "x", "y", "shown", "ours", published="limits threshold")
+    many = TargetRow("limits", "cold", "K", "x", "y", "shown", "ours", published="limits threshold")
     with pytest.raises(RecordError, match=r"6 records of 'limits threshold' for 'limits, cold': one is needed"):
         published_for(many, load_thresholds())
     with pytest.raises(RecordError, match=r"0 records .* whose conditions begin with 'girls' for 'limits, cold'"):

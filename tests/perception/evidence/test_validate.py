@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.circuit.records import Table
+from thermicon.circuit.records import RecordTable
 from thermicon.icons import load_library
 from thermicon.perception import rank
 from thermicon.perception.evidence.identified import GROUPS, SHAPES, WAVES, wave_name
@@ -78,7 +78,7 @@ def test_what_is_made_of_both_channels(report: ValidationReport) -> None:
 
 def test_published_numbers_come_from_the_records(report: ValidationReport) -> None:
     known = load_thresholds()
-    moved = Table(
+    moved = RecordTable(
         known.name,
         tuple(replace(r, value=9.0, low=None, high=None) if r.quantity == "choice reaction time" else r for r in known),
     )

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, simulate
-from thermicon.circuit.records import RecordError, Table, load_records
+from thermicon.circuit.records import RecordError, RecordTable, load_records
 from thermicon.icons import load_library, parse
 from thermicon.perception import Observer, draw_people, frontier, perceive, rank, search
 from thermicon.perception.identification.depths import rungs
@@ -51,7 +51,7 @@ def test_whatever_is_needed_is_asked_for(variable: Variable) -> None:
     for quantity in {record.quantity.removesuffix(" from heat flow") for record in load_records(SHIPPED)}:
         kept = tuple(r for r in load_records(SHIPPED) if r.quantity.removesuffix(" from heat flow") != quantity)
         try:
-            Observer.from_table(Table("x", kept), variable=variable)
+            Observer.from_table(RecordTable("x", kept), variable=variable)
         except RecordError as wrong:
             assert f"no quantity '{quantity}'" in str(wrong).replace(" from heat flow", "")
             needed.add(quantity)

@@ -13,11 +13,11 @@ from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.experiments.measure import Condition, Setting, logs_of
 from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.draws import PosteriorDraws
-from thermicon.perception.pilot.conditioning import Measured, condition
+from thermicon.perception.pilot.conditioning import MeasuredValues, condition
 from thermicon.perception.pilot.likelihood import effective, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import (
     Emulated,
-    Predicted,
+    SimulatedMeasurements,
     log_likelihood,
     person_covariance,
     predicted,
@@ -45,7 +45,7 @@ def test_a_mean_of_trials_is_as_likely_as_the_trials_one_by_one() -> None:
     some = Measurements((*USUAL[:2], RATING), ("P1", "P2"), values, errors, trials)
     root, times = np.random.default_rng(1).normal(0.0, 0.4, (3, 3, 3)), np.nan_to_num(trials, nan=1.0)
     means, within = np.log([[1.0, 1.6, 50.0], [0.7, 2.5, 30.0], [1.3, 1.3, 20.0]]), np.linspace(0.1, 0.8, 9)
-    each = Predicted(means, root @ root.swapaxes(1, 2), within.reshape(3, 3))
+    each = SimulatedMeasurements(means, root @ root.swapaxes(1, 2), within.reshape(3, 3))
     people, which = (np.repeat(place, times[some.given].astype(int)) for place in np.nonzero(some.given))
     expected = np.zeros(3)
     for k in range(3):
@@ -64,7 +64,7 @@ def test_a_polynomial_is_as_likely_as_what_it_was_fitted_to_where_that_is_straig
     mean, people, within = np.split(np.log([1.2, 2.2, 0.1, 0.1, 0.05, 0.05]) + place @ slopes, 3, axis=1)
     values = np.exp(chance.normal(0.5, 0.3, (4, 2)))
     some = Measurements(USUAL[:2], ("P1", "P2", "P3", "P4"), values, unknown, np.ones((4, 2)))
-    each = Predicted(mean, np.exp(2.0 * people)[:, :, None] * np.eye(2), np.exp(within))
+    each = SimulatedMeasurements(mean, np.exp(2.0 * people)[:, :, None] * np.eye(2), np.exp(within))
     found = log_likelihood(some, each)
     assert (Emulated.fit(some, place, each, np.ones(400))(place) - found).std() < 0.02 * found.std()
 
@@ -98,7 +98,7 @@ def test_people_of_a_laboratory_scatter_as_predicted(prior: LaboratoryPrior) -> 
 @pytest.mark.slow
 def test_too_few_draws_are_refreshed_and_agree_with_many_weighed_draws(prior: LaboratoryPrior) -> None:
     some = synthetic_measurements(RIG, participants=12, trials=60, seed=1, conditions=SHARP)
-    found = condition(Measured(some, prior, Setting.of(RIG)), prior.first(200, 2), kept=150)
+    found = condition(MeasuredValues(some, prior, Setting.of(RIG)), prior.first(200, 2), kept=150)
     assert 1 <= found.rounds <= 3 and found.effective < 50.0 and found.effective_after >= 37.5
     assert len(found.after) == len(found.simulated_after.mean) == 150
     many = predicted(prior, prior.first(1000, 5), Setting.of(RIG), SHARP)

@@ -14,7 +14,7 @@ from scipy.optimize import Bounds, LinearConstraint, milp
 from thermicon.perception.identification.confusion import confuse
 from thermicon.perception.identification.measures import information_bits, proportion_correct
 from thermicon.perception.selection import max_min_subset as max_min
-from thermicon.perception.selection.max_min_subset import Limits, max_min_subset, nearest_pair
+from thermicon.perception.selection.max_min_subset import Totals, max_min_subset, nearest_pair
 from thermicon.perception.selection.request import Objective, UndecidedError
 from thermicon.perception.selection.subset_identification import SubsetIdentification, ceiling, pick, replaced, right
 
@@ -48,7 +48,7 @@ def test_every_choice_is_worse_or_equal(seed: int, n: int, data: st.DataObject) 
 def test_limits_are_kept_and_ties_do_no_harm(seed: int, n: int, share: float, data: st.DataObject) -> None:
     d, count = np.round(points(seed, n)), data.draw(st.integers(2, n))
     costs = np.random.default_rng(seed + 1).random((2, n)) - 0.2
-    limits = Limits(costs, tuple(float(share * row.mean() * count) for row in costs))
+    limits = Totals(costs, tuple(float(share * row.mean() * count) for row in costs))
     allowed = [c for c in combinations(range(n), count) if limits.kept(c)]
     found = max_min_subset(d, count, (), limits)
     if not allowed:
@@ -93,13 +93,13 @@ def test_a_search_that_stops_early_leaves_a_bound_above(monkeypatch: pytest.Monk
 
 def test_totals_are_decided_or_said_to_be_open(monkeypatch: pytest.MonkeyPatch) -> None:
     costs = np.random.default_rng(2).random(60)
-    tight = Limits(costs[None], (float(np.sort(costs)[:5].sum()),))
+    tight = Totals(costs[None], (float(np.sort(costs)[:5].sum()),))
     found = max_min_subset(points(2, 60), 5, (), tight)
     assert found is not None and found.chosen == tuple(sorted(np.argsort(costs)[:5].tolist()))
-    assert tight.kept(found.chosen) and not Limits(costs[None], (tight.most[0] - 1e-6,)).kept(found.chosen)
+    assert tight.kept(found.chosen) and not Totals(costs[None], (tight.most[0] - 1e-6,)).kept(found.chosen)
     # No four of 0 and 0.3 add up to between 1.0 and 1.05.
     few = np.array([0.0, 0.3, 0.0, 0.3, 0.3, 0.0, 0.3, 0.0])
-    limits = Limits(np.stack([few, -few]), (1.05, -1.0))
+    limits = Totals(np.stack([few, -few]), (1.05, -1.0))
     assert max_min_subset(points(1, 8), 4, (), limits) is None
     monkeypatch.setattr(max_min, "MOST_STEPS", 0)
     with pytest.raises(UndecidedError, match="it could not be decided whether any choice keeps the totals: relax one"):
@@ -121,7 +121,7 @@ def pool(seed: int, n: int, people: int = 3, size: float = 1.5) -> SubsetIdentif
 @pytest.mark.parametrize(("n", "count", "must"), [(6, 2, ()), (7, 3, (4,)), (6, 6, ()), (7, 4, (2, 6))])
 def test_enumeration_is_brute_force(objective: Objective, n: int, count: int, must: tuple[int, ...]) -> None:
     held = pool(n, n)
-    found = held.enumerated(count, objective, must, Limits.none(n))
+    found = held.enumerated(count, objective, must, Totals.none(n))
     assert found is not None
     allowed = [c for c in combinations(range(n), count) if set(must) <= set(c)]
     scores = [held.score(c, objective) for c in allowed]
@@ -141,7 +141,7 @@ def test_what_is_named_right_is_the_same_with_and_without_the_errors(place: int)
 
 def test_enumeration_keeps_limits() -> None:
     held = pool(2, 7)
-    limits = Limits(held.durations_s[None], (float(np.sort(held.durations_s)[:4].sum()) - 1.0,))
+    limits = Totals(held.durations_s[None], (float(np.sort(held.durations_s)[:4].sum()) - 1.0,))
     found = held.enumerated(3, "correct", (), limits)
     allowed = [c for c in combinations(range(7), 3) if limits.kept(c)]
     assert found is not None

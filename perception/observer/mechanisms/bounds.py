@@ -1,4 +1,4 @@
-"""Limits of quality: no cold above one temperature, no warmth below another."""
+"""Bounds of quality: no cold above one temperature, no warmth below another."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ NO_LIMIT_C = Both(1e6, -1e6)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Limits(Mechanism):
+class Bounds(Mechanism):
     """Hardly any cold above its limit, no warmth below its own: a fall from 36 to 34 °C is less warm, not cold."""
 
     equation = "q = L + s·δ·ln(1 + e^(s·(T − L)/δ))"

@@ -1,4 +1,4 @@
-"""Skin: where receptors lie, and under a thermode the contact and the effusivity of living tissue."""
+"""Tissue: where receptors lie, and under a thermode the contact and the effusivity of living tissue."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Skin(Mechanism):
+class Tissue(Mechanism):
     """Depth of receptors, by one rule at every site; contact and effusivity of laboratories: rigs have their own."""
 
     equation = "depth = share · stratum corneum + own depth; √(kρc) of living layers × effusivity"
