@@ -12,12 +12,14 @@ COPY . /opt/thermicon
 RUN pip install --no-cache-dir "/opt/thermicon[hardware,parquet,study]" jupyterhub
 
 # The name and the number that hubs expect.
-RUN useradd --create-home --uid 1000 jovyan
+RUN useradd --create-home --uid 1000 jovyan \
+    && install --directory --owner=jovyan --group=jovyan --mode=700 /opt/thermicon-cache
 USER jovyan
 WORKDIR /home/jovyan
 
-# Compiled once into the image and outside a home that a hub may replace, so that the first icon comes at once.
-ENV THERMICON_CACHE=/home/jovyan/.thermicon-cache
+# Compiled once into the image and outside the home, over which a hub mounts another, so that the first icon comes at
+# once. Machine code is loaded from a folder only if no other user can write to it.
+ENV THERMICON_CACHE=/opt/thermicon-cache
 RUN thermicon rank six-icons --people 20 && thermicon doctor
 
 RUN thermicon lab notebooks --files-only

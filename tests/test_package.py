@@ -17,7 +17,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("thermicon", "icons", "circuit", "perception", "notebooks")
 LEFT_OUT = shutil.ignore_patterns(
-    ".git", ".venv", ".types", "__pycache__", "*.py[cod]", "*.egg-info", "build", "dist", ".*_cache", ".hypothesis"
+    ".git", ".venv", "__pycache__", "*.py[cod]", "*.egg-info", "build", "dist", ".*_cache", ".hypothesis"
 )
 AWKWARD = "Größe mit Lücken"
 """A folder whose name has spaces and umlauts."""
@@ -48,7 +48,7 @@ def shipped(folder: Path) -> set[str]:
 def archives(tmp_path_factory: pytest.TempPathFactory) -> Archives:
     """Built from a copy: the source archive first, and the wheel from that archive, as `python -m build` does."""
     folder = tmp_path_factory.mktemp("build") / AWKWARD
-    shutil.copytree(ROOT, folder, ignore=LEFT_OUT)
+    shutil.copytree(ROOT, folder, symlinks=True, ignore=LEFT_OUT)
     command = [sys.executable, "-m", "build", "--outdir", str(folder / "dist"), str(folder)]
     run = subprocess.run(command, capture_output=True, encoding="utf-8", timeout=600, check=False)
     assert run.returncode == 0, run.stdout + run.stderr
@@ -71,6 +71,9 @@ def test_the_source_archive_is_complete(archives: Archives) -> None:
         if path.is_file() and not {"__pycache__", "_build"} & set(path.parts)
     }
     expected |= {"LICENSE", "README.md", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "SECURITY.md", "Dockerfile"}
+    expected |= {".dockerignore", ".types/thermicon/__init__.pyi", ".types/thermicon/py.typed"}
+    typed = {name for name in shipped(ROOT) if name.endswith((".py", ".pyi")) and not name.startswith("thermicon/")}
+    expected |= {f".types/thermicon/{name}" for name in typed}  # mypy reads the packages there
     assert expected - names == set()
     assert [name for name in names if name.endswith(".pyc") or "__pycache__" in name] == []
 
