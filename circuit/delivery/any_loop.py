@@ -25,12 +25,12 @@ from ..safety.held import BEYOND_K, inwards
 from ..safety.single_faults import AFTER_ROWS_S, HANG_ROWS_S
 from ..safety.tally import HOTTEST_C, WATCHED, Tally
 from ..solver.batch_inputs import Bank, State, run_follow
+from ..solver.inverse import regulated
 from ..solver.network import COLD, COMPLIANCE_V, HIGHEST_A, LOWEST_A
 from ..solver.steady import state_under_current
 from .delivered_drive import loss_limit
 from .samples import Samples
-from .shaped import regulated
-from .temperatures import FollowingModule, past_most_cooling, rest_of_a_loop, updates_of
+from .temperatures import FollowingModule, rest_of_a_loop, updates_of
 
 SENSOR_K = 0.3
 """Greatest offset of the sensors of loop and cut-off: what interchangeable thermistors promise (±0.2 K), and glue."""
@@ -57,11 +57,6 @@ class AnyLoop:
 
     module: FollowingModule
     bank: Bank
-
-    @staticmethod
-    def of(module: FollowingModule) -> AnyLoop:
-        """Loops around a module."""
-        return AnyLoop(module, past_most_cooling(module.rigs))
 
     def within(self, limits_A: Limits_A) -> Bank:
         """The corners with current limits as commanded, and a supply of any voltage."""

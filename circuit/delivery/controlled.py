@@ -31,7 +31,7 @@ from .delivered_drive import DeliveredDrive
 from .formats.form import samples_of
 from .samples import Samples
 from .shaped import LATE_S, PLAYING, looped
-from .temperatures import FollowingModule, rest_of_a_loop, updates_of
+from .temperatures import FollowingModule, past_most_cooling, rest_of_a_loop, updates_of
 
 BESIDE_K = 0.5
 """How far beside its set-points a display is judged: a wrong sensor, and what a loop swings by on the average."""
@@ -51,7 +51,7 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
         rig, stuck_C=stuck_C, pause_s=pause_s, module=True,
     )  # fmt: skip
     module, under = FollowingModule.of(looped(rig)), DisplayPlant.of(rig, stuck_C)
-    loops, plays = AnyLoop.of(module), [samples_of(delivery) for delivery in deliveries]
+    loops, plays = AnyLoop(module, past_most_cooling(module.rigs)), [samples_of(delivery) for delivery in deliveries]
     cuts, unpowered_C = [verdict.demands.cut_off_display_C for verdict in verdicts], module.unpowered_C()
     reach_C = (
         min(unpowered_C[0], *(cut.low + BEYOND_K for cut in cuts)),

@@ -15,9 +15,9 @@ from ..arrays import Array, Index
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..safety.corners import corners_of
-from ..solver.batch_inputs import Bank, bank_of, run_regulate
-from ..solver.inverse import gains_of
-from ..solver.kernel_follow import FREE, KD, KI, KP
+from ..solver.batch_inputs import bank_of
+from ..solver.inverse import regulated
+from ..solver.kernel_follow import FREE
 from ..solver.network import ALPHA, COLD_J_PER_K, LOWEST_A, RESISTANCE, network_of
 from ..solver.steady import steady_state
 from .samples import Samples
@@ -52,17 +52,6 @@ def looped(rig: Rig) -> Rig:
     kp = float(f"{CALM / (speed * (SENSOR_LAG_S + LATE_S)) / (1.0 + PLAYING):.2g}")
     gains = {"kp_A_per_K": kp, "ki_A_per_Ks": float(f"{RESET_PER_S * kp:.2g}"), "kd_As_per_K": 0.0}
     return rig.with_(controller={"lag_s": SENSOR_LAG_S, **gains})
-
-
-def regulated(
-    rig: Rig, bank: Bank, goals_C: Array, rest: tuple[float, Array], gain: float = 1.0
-) -> tuple[Array, Array, Index]:
-    """Current A, display °C and code of the limit of each update, by a rig's loop on the first of `bank`."""
-    lane, gains = np.zeros(1, dtype=np.int64), np.array([gains_of(rig)])
-    gains[:, [KP, KI, KD]] *= gain
-    period, bias = 1.0 / rig.driver.update_Hz, np.array([rest[0]])
-    found = run_regulate(bank, lane, lane, period, goals_C[np.newaxis], gains, bias, bank.states([rest[1]]))
-    return found[0][0], found[1][0], found[2][0]
 
 
 def places_of(samples: Samples, period_s: float) -> Index:

@@ -26,7 +26,7 @@ from ..safety.single_faults import Faulty
 from ..safety.tally import WATCHED
 from ..solver.batch_inputs import Bank, bank_of, run_follow
 from ..solver.drive import Drive
-from ..solver.inverse import Design, baseline_C, design_ideal
+from ..solver.inverse import Design, baseline_C, design_ideal, regulated
 from ..solver.network import PAST_MOST_COOLING, network_of
 from ..solver.simulate import duration_s, simulate_current
 from ..solver.steady import check_sink, holding_current_A, state_under_current, steady_state
@@ -35,7 +35,7 @@ from .device import Device
 from .devicefile import DeviceError
 from .samples import Samples, led, rate_of
 from .setpoints import check_level
-from .shaped import looped, places_of, regulated, shaped
+from .shaped import looped, places_of, shaped
 
 
 def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float) -> ModuleDrive:

@@ -90,16 +90,11 @@ class Skin:
 
     def with_effusivity(self, times: float) -> Skin:
         """The skin whose living layers have so many times their effusivity √(k·ρ·c), at the same diffusivity."""
-        layers = [
-            layer
-            if layer.name == STRATUM_CORNEUM
-            else replace(
-                layer,
-                conductivity_W_per_mK=times * layer.conductivity_W_per_mK,
-                heat_capacity_J_per_kgK=times * layer.heat_capacity_J_per_kgK,
-            )
-            for layer in self.layers
-        ]
+        layers = list(self.layers)
+        for place, layer in enumerate(layers):
+            if layer.name != STRATUM_CORNEUM:
+                k, c = times * layer.conductivity_W_per_mK, times * layer.heat_capacity_J_per_kgK
+                layers[place] = replace(layer, conductivity_W_per_mK=k, heat_capacity_J_per_kgK=c)
         return replace(self, layers=tuple(layers))
 
     def receptor_words(self) -> str:

@@ -47,11 +47,6 @@ class DisplayCourse:
     settling_s: float = 0.0
 
     @property
-    def rows_s(self) -> Array:
-        """Times in s of the rows."""
-        return np.arange(len(self.display_C), dtype=np.float64) * self.step_s
-
-    @property
     def end_s(self) -> float:
         """Time in s of the last row."""
         return self.step_s * (len(self.display_C) - 1)
@@ -108,7 +103,8 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         """A whole play as one stretch."""
         pairs = zip(self.modes, state, strict=True)
         runs = [modes.run(play.display_C, play.step_s, begun) for modes, begun in pairs]
-        yield (play.rows_s, watched([felt for felt, _ in runs])), [end for _, end in runs]
+        rows: Array = np.arange(len(play.display_C), dtype=np.float64) * play.step_s
+        yield (rows, watched([felt for felt, _ in runs])), [end for _, end in runs]
 
     def hold(self, play: DisplayCourse, state: Sequence[Array], times_s: Array) -> Array:
         """The last temperature held."""

@@ -24,9 +24,9 @@ from ..arrays import Array
 from ..cores import quiet_blas
 from ..rig.rig import AnyRig, Rig
 from ..rig.rules import Limits
-from ..solver.batch_inputs import bank_of, run_follow, run_regulate
+from ..solver.batch_inputs import bank_of, run_follow
 from ..solver.drive import Drive
-from ..solver.inverse import Design, baseline_C, design, gains_of, target_at
+from ..solver.inverse import Design, baseline_C, design, regulated, target_at
 from ..solver.simulate import duration_s, simulate, simulate_current
 from ..solver.trace import Trace
 from .checks import Check, Judged, worst_of
@@ -122,14 +122,13 @@ def _tracked(
         target[start + count :] = base
     first = design(icons[named], rig, lasting[named])
     bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
-    states, period = bank.states([first.start_C]), 1.0 / update
     if rig.controller is None:
-        current = run_follow(bank, lane, lane, period, target[np.newaxis], False, states)[0]
+        states = bank.states([first.start_C])
+        current = run_follow(bank, lane, lane, 1.0 / update, target[np.newaxis], False, states)[0][0]
     else:
-        setpoint = np.concatenate([[displays[named][0]], target[:-1]])[np.newaxis]
-        gains = np.array([gains_of(rig)])
-        current = run_regulate(bank, lane, lane, period, setpoint, gains, np.array([first.rest_A]), states)[0]
-    return Drive(np.arange(ends + 1) / update, np.append(current[0], first.rest_A), held=True), first
+        setpoint = np.concatenate([[displays[named][0]], target[:-1]])
+        current = regulated(rig, bank, setpoint, (first.rest_A, first.start_C))[0]
+    return Drive(np.arange(ends + 1) / update, np.append(current, first.rest_A), held=True), first
 
 
 def _setpoints(icon: Icon, rig: Rig, count: int, lasts_s: float) -> tuple[float, Array]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from typing import TYPE_CHECKING
 
 from ..arrays import Array
@@ -74,10 +73,8 @@ def tidy(ax: Axes, time_s: Array, label: str) -> Axes:
 
 def svg_of(trace: Trace) -> str:
     """Return a small SVG picture of a trace, for notebooks."""
+    from thermicon.icons.pictures.draw import as_svg
+
     ax = plot_temperatures(trace, new_axes(None, (5.2, 2.2)))
     ax.set_title(trace.icon or "drive", fontsize="medium")
-    out = io.StringIO()
-    figure = ax.get_figure()
-    assert figure is not None
-    figure.savefig(out, format="svg")  # type: ignore[union-attr, unused-ignore]
-    return out.getvalue()[out.getvalue().index("<svg") :]
+    return as_svg(ax)

@@ -11,7 +11,7 @@ from thermicon.icons.model.arguments import checked
 
 from ..arrays import Array, Index
 from ..rig.rig import AnyRig, Rig
-from .batch_inputs import bank_of, cut, run_follow, run_forward, run_regulate
+from .batch_inputs import Bank, bank_of, cut, run_follow, run_forward, run_regulate
 from .drive import Drive
 from .network import network_of
 from .steady import state_under_current, steady_state
@@ -146,18 +146,31 @@ def gains_of(rig: Rig) -> tuple[float, float, float, float, float]:
     return pid.lag_s, pid.kp_A_per_K, pid.ki_A_per_Ks, pid.kd_As_per_K, 0.0
 
 
+def regulated(
+    rig: Rig, bank: Bank, goals_C: Array, rest: tuple[float, Array], gain: float = 1.0
+) -> tuple[Array, Array, Index]:
+    """Current A, display °C and code of the limit of each update, by a rig's loop on the first of `bank`.
+
+    `rest` has current and state before; `gain` is that of the current source.
+    """
+    from .kernel_follow import KD, KI, KP
+
+    lane, gains = np.zeros(1, dtype=np.int64), np.array([gains_of(rig)])
+    gains[:, [KP, KI, KD]] *= gain
+    period, bias = 1.0 / rig.driver.update_Hz, np.array([rest[0]])
+    found = run_regulate(bank, lane, lane, period, goals_C[np.newaxis], gains, bias, bank.states([rest[1]]))
+    return found[0][0], found[1][0], found[2][0]
+
+
 def close_loop(rig: Rig, plan: Design, icon: Icon, target: Array) -> Design:
     """The currents of the rig's own PID loop for a cue, whose set-point is its display, or that of the ideal `plan`."""
-    bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
     period, control, base = 1.0 / rig.driver.update_Hz, icon.context.control, baseline_C(icon, rig)
     setpoint = _along(rig, plan, "display_C")[:-1] if control == "skin" else np.concatenate([[base], target[:-1]])
-    gains, begun = np.array([gains_of(rig)]), bank.states([plan.start_C])
-    results = run_regulate(bank, lane, lane, period, setpoint[np.newaxis], gains, np.array([plan.rest_A]), begun)
-    currents, reached, why = results
-    drive = Drive(plan.drive.time_s, [*currents[0], currents[0, -1]], held=True)
+    currents, reached, why = regulated(rig, bank_of(rig), setpoint, (plan.rest_A, plan.start_C))
+    drive = Drive(plan.drive.time_s, [*currents, currents[-1]], held=True)
     loop = Design(drive, plan.rest_A, plan.start_C, None)
-    controlled = _along(rig, loop, "skin_C")[1:] if control == "skin" else reached[0]
-    outcome = judge(target, controlled, period, _limits(why[0], period), steps_at(icon, base))
+    controlled = _along(rig, loop, "skin_C")[1:] if control == "skin" else reached
+    outcome = judge(target, controlled, period, _limits(why, period), steps_at(icon, base))
     return replace(loop, outcome=outcome)
 
 

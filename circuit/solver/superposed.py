@@ -67,10 +67,7 @@ def superposed(
     rigs, cues = len(bank.count), len(display_C)
     rig_of, cue_of = (place.ravel() for place in np.indices((rigs, cues)))
     which = [RECORDED.index(probe) for probe in probes]
-    places, weights = (
-        np.ascontiguousarray(bank.probe_start[:, which]),
-        np.ascontiguousarray(bank.probe_weight[:, which]),
-    )
+    places, weights = map(np.ascontiguousarray, (bank.probe_start[:, which], bank.probe_weight[:, which]))
     response = np.empty((rigs, len(which) + 1, display_C.shape[1]))
 
     def respond(part: Index) -> None:

@@ -200,18 +200,14 @@ class _Assembler:
             )
             return None
         index = self.index[known]
-        if index in self.playing or len(self.playing) > DEEPEST:
-            round_trip = (
-                [str(self.trees[n].children[0]) for n in self.playing[self.playing.index(index) :]] + [known]
-                if index in self.playing
-                else []
-            )
-            if round_trip:
-                what = f"these icons play each other in a circle: {' plays '.join(round_trip)}"
-                self.builder.add("E232", place, what, "an icon cannot play itself, nor one that plays it")
-            else:
-                what = f"icons play one another more than {DEEPEST} deep"
-                self.builder.add("E115", place, what, "write the statements of the innermost icons out")
+        if index in self.playing:
+            names = [str(self.trees[n].children[0]) for n in self.playing[self.playing.index(index) :]]
+            what = f"these icons play each other in a circle: {' plays '.join([*names, known])}"
+            self.builder.add("E232", place, what, "an icon cannot play itself, nor one that plays it")
+            return None
+        if len(self.playing) > DEEPEST:
+            what = f"icons play one another more than {DEEPEST} deep"
+            self.builder.add("E115", place, what, "write the statements of the innermost icons out")
             return None
         found = self.made(index)
         if not isinstance(found, Family):
