@@ -5,7 +5,7 @@ import pytest
 from thermicon.notebooks.report.choices import choice_lines, goal_lines
 from thermicon.notebooks.report.plan_report import designs_table
 from thermicon.perception import Goal
-from thermicon.perception.pilot.plan import Design, Plan
+from thermicon.perception.pilot.plan import ExperimentPlan, ExperimentSize
 from thermicon.perception.selection.appraise import Appraisal
 from thermicon.perception.selection.choose import Choice
 from thermicon.perception.selection.goal_result import GoalPartResult, GoalResult
@@ -53,8 +53,9 @@ def test_the_star_of_a_plan_stands_at_sizes_that_are_enough(
 ) -> None:
     """Of one set the width of the interval counts, of two the power."""
     sizes = tuple(
-        Design(10, trials, width, power) for trials, width, power in zip((24, 48), (0.12, 0.08), found, strict=True)
+        ExperimentSize(10, trials, width, power)
+        for trials, width, power in zip((24, 48), (0.12, 0.08), found, strict=True)
     )
-    plan = Plan((), None, sizes, 0.1 if found[0] is None else 0.8, "thenar", (), "episodes", 0, 8, "0")
+    plan = ExperimentPlan((), None, sizes, 0.1 if found[0] is None else 0.8, "thenar", (), "episodes", 0, 8, "0")
     (row,) = designs_table(plan).rows
     assert ["*" in cell.text for cell in row[1:]] == starred
