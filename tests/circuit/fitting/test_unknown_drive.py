@@ -133,7 +133,7 @@ def test_without_a_current_the_display_is_the_drive(skin: Log, thenar: Rig) -> N
 
 def test_the_reading_of_a_probe_that_the_rig_lacks_is_named(skin: Log, thenar: Rig) -> None:
     with pytest.raises(
-        LogError, match=r"skin.csv: probe_deep_C: rig thenar has no such probe; say where it is, as with"
+        LogError, match=r"skin.csv: probe_deep_C: rig thenar has no such probe; say where it is by the key probe="
     ):
         fit(skin, thenar)
 

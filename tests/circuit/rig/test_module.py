@@ -254,7 +254,7 @@ def test_two_sheets_are_taken_between_heat_sink_and_resting_skin() -> None:
     warm = rig.with_(**{"heat_sink.temperature_C": 40})
     assert _parameters(warm) == pytest.approx(at_mean_C(found[1:], 0.0))
     (said,) = warm.warnings
-    words = ["36.0 °C, lies above the 8.5 … 31.2 °C", "by up to 2.3 %", "[[module.datasheet]] of a hotter"]
+    words = ["36.0 °C it is used above the 8.5 … 31.2 °C", "by up to 2.3 %", "[[module.datasheet]] of a hotter"]
     assert not missing(words, said)
     named = THENAR.with_(**{"module.name": "TEC1-12706"}).warnings[0]
     assert "by up to 2.3 %: where that matters, fit the module to a log" in named
