@@ -88,15 +88,13 @@ def log_errors(measured: Measurements, within: Array) -> Array:
     return _errors(measured.errors / measured.values, measured.trials, within)
 
 
-def log_likelihood(
-    measured: Measurements, each: SimulatedMeasurements, groups: tuple[Group, ...] | None = None
-) -> Array:
+def log_likelihood(measured: Measurements, each: SimulatedMeasurements, groups: tuple[Group, ...] = ()) -> Array:
     """Ln likelihood (laboratories,) of all values, up to a constant."""
     shared, spread = shared_covariance(measured), person_covariance(measured, each.between)
     count = len(shared)
     precision, weighted = np.zeros((len(each.mean), count, count)), np.zeros((len(each.mean), count))
     found = np.zeros(len(each.mean))
-    for group in groups_of(measured) if groups is None else groups:
+    for group in groups or groups_of(measured):
         used = group.conditions
         error = _errors(group.stated, group.trials, each.within[:, used])
         own = spread[:, used[:, None], used] + np.square(error)[:, :, None] * np.eye(len(used))
