@@ -121,8 +121,8 @@ def private_folder(path: Path) -> Path:
     lists keep the user's own folders private, it is only created. Raises NotPrivate.
     """
     path = path.absolute()
-    missing = [folder for folder in (path, *path.parents) if not folder.exists()]
-    try:
+    try:  # even to look is not allowed inside another user's private folder
+        missing = [folder for folder in (path, *path.parents) if not folder.exists()]
         for folder in reversed(missing):
             folder.mkdir(mode=0o700, exist_ok=True)
     except OSError as problem:

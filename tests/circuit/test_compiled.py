@@ -12,6 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import count
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import numba
 import pytest
@@ -186,15 +187,16 @@ def test_what_others_can_write_is_never_read(run: Run, sources: Path, cache: Pat
 @pytest.mark.parametrize(
     ("where", "value", "said"),
     [
-        (os, lambda *_: False, "compiled code cannot be stored, so that every run compiles it again: "),
-        (compiled, os.fsdecode(b"/Gr\xff/circuit/compiled.py"), "that this locale cannot read; set PYTHONUTF8=1"),
+        ((os, "access"), lambda *_: False, "compiled code cannot be stored, so that every run compiles it again: "),
+        ((Path, "exists"), Mock(side_effect=PermissionError(13, "Not allowed")), "cannot be created (Not allowed)"),
+        ((compiled, "__file__"), os.fsdecode(b"/Gr\xff/circuit/compiled.py"), "cannot read; set PYTHONUTF8=1"),
     ],
-    ids=["not written", "not readable"],
+    ids=["not written", "not entered", "not readable"],
 )
 def test_a_folder_without_a_safe_place_is_not_used(
     monkeypatch: pytest.MonkeyPatch, cache: Path, caplog: pytest.LogCaptureFixture, where: Any, value: Any, said: str
 ) -> None:
-    monkeypatch.setattr(where, "access" if where is os else "__file__", value)  # to root every folder is writable
+    monkeypatch.setattr(*where, value)  # to root every folder is writable
     monkeypatch.setenv("THERMICON_CACHE", str(cache))
     assert compiled.kept_in.__wrapped__() is None
     assert said in caplog.text
