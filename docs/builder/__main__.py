@@ -1,6 +1,7 @@
 """Build the docs site: ``python docs/builder`` writes it to build/site/html; no warning is allowed.
 
-``--no-execute`` leaves out what computes for minutes: outputs of the tutorials and predictions in the gallery.
+``--no-execute`` leaves out what computes for minutes: outputs of the tutorials, predictions in the gallery,
+pictures of pages.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from command_options import command_options
 from data_tables import DATA_TABLES
 from gallery import Gallery
 from key_tables import KEY_TABLES
+from page_pictures import PagePictures
 from paper_figures import circuit_diagram, paper_figures
 from posterior_tables import TABLES as POSTERIOR_TABLES
 from python_names import python_index, python_pages
@@ -34,8 +36,9 @@ def build(folder: Path, *, execute: bool) -> int:
     drawn_by = Path(__file__).with_name("gallery.py").read_bytes()
     code = code_digest()
     gallery_digest = hashlib.sha256(code.encode() + drawn_by).hexdigest()
-    site = Staging(folder / "source", {})
-    gallery = Gallery(folder / "predicted" / gallery_digest[:16] if execute else None, site.write)
+    kept = folder / "predicted" / gallery_digest[:16] if execute else None
+    site = Staging(folder / "source", {}, PagePictures(kept))
+    gallery = Gallery(kept, site.write)
     site.slots.update(POSTERIOR_TABLES | KEY_TABLES | DATA_TABLES)
     site.slots.update(
         {
@@ -69,7 +72,7 @@ def main() -> int:
     """Read the command line and build."""
     parser = argparse.ArgumentParser(prog="python docs/builder", description="Build the docs site.")
     parser.add_argument("-o", "--output", type=Path, default=ROOT / "build" / "site", help="folder for the site")
-    parser.add_argument("--no-execute", action="store_true", help="leave out tutorials' outputs and predictions")
+    parser.add_argument("--no-execute", action="store_true", help="leave out outputs, predictions and their pictures")
     chosen = parser.parse_args()
     code = build(chosen.output.resolve(), execute=not chosen.no_execute)
     if code == 0:

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
+from page_pictures import MARK, PagePictures, command_lines
 from pygments.lexers import get_lexer_by_name
 from sections import front_page, read_sections, with_toctree
 
@@ -29,6 +30,9 @@ NO_LEXER = ("", "csv", "cue")
 SLOT = re.compile(r"<!-- site: (?P<name>[\w ]+) -->\n(?P<meanwhile>.*?)<!-- end of site -->\n?", re.DOTALL)
 """What only the site has, made from the program; a code host shows the sentences between the marks instead."""
 
+NOT_SEARCHED = ("contribute/changelog.md", "reference/errors.md", "reference/refusals.md")
+"""Pages that hold a little of everything: in a search they would stand before the page on what was asked."""
+
 
 class StagingError(RuntimeError):
     """A page that cannot be put on the site: which one, and what is wrong with it."""
@@ -36,10 +40,11 @@ class StagingError(RuntimeError):
 
 @dataclass(frozen=True, slots=True)
 class Staging:
-    """The folder that holds the sources of the site, what fills the slots of its pages, and what was written so far."""
+    """The folder that holds the sources of the site, what fills its pages, and what was written so far."""
 
     folder: Path
     slots: dict[str, Callable[[], str]]
+    pictures: PagePictures = field(default_factory=lambda: PagePictures(None))
     written: set[str] = field(default_factory=set)
 
     def stage(self, more: dict[str, str]) -> None:
@@ -53,7 +58,8 @@ class Staging:
             here, text = staged(where), path.read_text(encoding="utf-8")
             if where.name == "README.md" and where.parts[0] == "docs":
                 text = front_page(sections) if len(where.parts) == 2 else with_toctree(text, str(here), sections)
-            self.write(str(here), self.filled(self.linked(text, where, here), where))
+            front = "---\nnosearch: true\n---\n\n" if str(here) in NOT_SEARCHED else ""
+            self.write(str(here), front + self.filled(self.linked(text, where, here), where))
         for section in sections:
             if section.index not in self.written:
                 text = self.linked(section.page, PurePosixPath("docs/README.md"), PurePosixPath(section.index))
@@ -80,7 +86,14 @@ class Staging:
                 raise StagingError(f"{where}: there is no slot {slot['name']!r}, only {', '.join(sorted(self.slots))}")
             return self.slots[slot["name"]]().rstrip() + "\n"
 
-        return SLOT.sub(content, text)
+        def picture(mark: re.Match[str]) -> str:
+            if (drawn := self.pictures.picture(mark, text)) is None:
+                return ""
+            self.write(f"pictures/{drawn.name}", drawn.read_bytes())
+            lines = " && ".join(f"thermicon {line}" for line in command_lines(mark))
+            return f"![{mark['alt']}](/pictures/{drawn.name})\n\n*{mark['alt']}*: `{lines}`\n"
+
+        return MARK.sub(picture, SLOT.sub(content, text))
 
     def linked(self, text: str, where: PurePosixPath, here: PurePosixPath) -> str:
         """Return a page of the repository with links as they are on the site, and with blocks in colour."""

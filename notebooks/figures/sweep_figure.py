@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -89,7 +90,8 @@ def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
         handles[name] = handles.pop(name)  # behind the icons
     key_above: dict[str, Any] = {"loc": "outside upper center", "ncols": 4, "frameon": False, "fontsize": 9}
     figure.legend(handles.values(), handles.keys(), **key_above)
-    below = [f"the same at all values: {'; '.join(label.partition(' (')[0] for label in same)}"] * bool(same)
+    alike = f"the same at all values: {'; '.join(label.partition(' (')[0] for label in same)}" * bool(same)
+    below = textwrap.wrap(alike, int(11 * figure.get_figwidth()))
     figure.supxlabel("\n".join([key_label(key), *below]), fontsize=10)
     return figure
 

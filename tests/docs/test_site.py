@@ -1,12 +1,14 @@
 """The docs site: what it is built from, what the program adds, and that it builds without a warning."""
 
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path, PurePosixPath
 from types import ModuleType
 
 import pytest
+from click import Context
 from typer.main import get_command
 
 from thermicon.notebooks.cli.main import app
@@ -22,7 +24,7 @@ FROM_ELSEWHERE = re.compile(r"""(?:<script[^>]+src|<link[^>]+href|<img[^>]+src)=
 def builder(monkeypatch: pytest.MonkeyPatch) -> dict[str, ModuleType]:
     """The modules of docs/builder, which is a program and not a package."""
     monkeypatch.syspath_prepend(str(BUILDER))
-    names = ("staging", "sections", "command_options", "python_names", "gallery")
+    names = ("staging", "sections", "command_options", "python_names", "gallery", "page_pictures")
     return {name: __import__(name) for name in (*names, "data_tables", "key_tables", "posterior_tables")}
 
 
@@ -48,6 +50,10 @@ def test_every_page_and_tutorial_stands_on_the_site(builder: dict[str, ModuleTyp
     front = (folder / "index.md").read_text(encoding="utf-8")
     assert front.count("{grid-item-card}") == 6
     assert (folder / "how-to" / "index.md").read_text(encoding="utf-8").count("\nsimulate\n") == 1
+    unsearched = [
+        path.name for path in folder.rglob("*.md") if path.read_bytes().startswith(b"---\nnosearch: true\n---")
+    ]
+    assert sorted(unsearched) == ["changelog.md", "errors.md", "refusals.md"]
 
 
 def test_links_lead_inside_the_site_and_cue_text_is_plain(builder: dict[str, ModuleType], tmp_path: Path) -> None:
@@ -72,6 +78,29 @@ def test_a_slot_is_filled_and_its_stand_in_gone(builder: dict[str, ModuleType], 
 def test_every_slot_is_on_a_page(builder: dict[str, ModuleType]) -> None:
     pages = [path.read_text(encoding="utf-8") for path in builder["staging"].pages()]
     assert {slot["name"] for page in pages for slot in builder["staging"].SLOT.finditer(page)} == slots(builder)
+
+
+def test_every_job_has_a_picture_that_commands_can_draw(builder: dict[str, ModuleType]) -> None:
+    commands = getattr(get_command(app), "commands", {})
+    for path in (ROOT / "docs" / "how-to").glob("*.md"):
+        text, pictures = path.read_text(encoding="utf-8"), builder["page_pictures"]
+        lines = [line for mark in pictures.MARK.finditer(text) for line in pictures.command_lines(mark)]
+        assert lines or "](../../images/" in text, path
+        for line in lines:
+            name, *words = shlex.split(line)
+            commands[name].make_parser(Context(commands[name])).parse_args(words)  # an unknown option raises
+
+
+def test_a_picture_is_drawn_from_the_files_of_its_page(builder: dict[str, ModuleType], tmp_path: Path) -> None:
+    page = "Save as `a.cue`:\n\n```\ncue 1\nicon a { cool by 4 °C at 4 °C/s }\n```\n\n"
+    pictures = builder["page_pictures"].PagePictures(tmp_path / "kept")
+    site = builder["staging"].Staging(tmp_path / "site", {}, pictures)
+    text = site.filled(f"{page}<!-- picture: simulate a.cue | An icon -->\n", PurePosixPath("docs/x.md"))
+    [picture] = (tmp_path / "site" / "pictures").iterdir()
+    assert f"![An icon](/pictures/{picture.name})" in text
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    with pytest.raises(builder["page_pictures"].PictureError, match=r"thermicon simulate b\.cue --figure"):
+        site.filled(f"{page}<!-- picture: simulate b.cue | Another -->\n", PurePosixPath("docs/x.md"))
 
 
 def test_the_lists_are_those_of_the_data(builder: dict[str, ModuleType]) -> None:

@@ -257,8 +257,8 @@ def test_two_sheets_are_taken_between_heat_sink_and_resting_skin() -> None:
     words = ["36.0 °C it is used above the 8.5 … 31.2 °C", "by up to 2.3 %", "[[module.datasheet]] of a hotter"]
     assert not missing(words, said)
     named = THENAR.with_(**{"module.name": "TEC1-12706"}).warnings[0]
-    assert "by up to 2.3 %: where that matters, fit the module to a log" in named
-    assert "lies below the 8.5" in rig.with_(**{"heat_sink.temperature_C": -20}).warnings[0]
+    assert "by up to 2.3 %: where that matters, fit it to a log" in named
+    assert "used below the 8.5" in rig.with_(**{"heat_sink.temperature_C": -20}).warnings[0]
 
 
 @pytest.mark.parametrize("name", module_names())
