@@ -19,7 +19,8 @@ ALWAYS = ("tests/circuit/delivery", "tests/perception/ranking")
 """Exported drives, and a cluster that loses a worker: what costs most when it breaks."""
 SHOWN_IN_A_BROWSER = ("notebooks/workbench", "notebooks/report", "notebooks/canvas_parts", "tests/browser")
 SHOWN_IN_PAGES = ("README.md", "docs/", "notebooks/cli", "notebooks/report", "circuit/delivery", "circuit/safety")
-ARCHIVED = ("thermicon/", "pyproject.toml", "MANIFEST.in", "LICENSE", *(f"{package}/" for package in PACKAGES))
+ARCHIVED = ("thermicon/", "pyproject.toml", "MANIFEST.in", "LICENSE", *(f"{package}/" for package in PACKAGES),
+            ".ci/", ".types/", "conda-recipe/", "Dockerfile", ".dockerignore")  # fmt: skip
 MINUTES = {
     "tests/browser": 3.0,
     "tests/circuit/delivery": 10.0,

@@ -5,13 +5,14 @@ import subprocess
 import sys
 import tomllib
 from importlib.machinery import SourceFileLoader
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from types import ModuleType
 
 import pytest
 import yaml
 
 ROOT = Path(__file__).resolve().parents[1]
+WORKFLOWS = ROOT / ".github" / "workflows"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 
@@ -41,6 +42,9 @@ PACKAGED = "tests/test_package.py"
         ("docs/how-to/simulate.md", {"tests/docs", "tests/test_readme.py"}),
         ("pyproject.toml", {PACKAGED}),
         ("MANIFEST.in", {PACKAGED}),
+        (".ci/lowest.py", {PACKAGED}),
+        ("conda-recipe/recipe.yaml", {PACKAGED}),
+        ("Dockerfile", {PACKAGED}),
         ("tests/conftest.py", set()),
     ],
 )
@@ -96,14 +100,27 @@ def test_contributing_names_folders_that_exist() -> None:
     assert [name for name in named if not (ROOT / name).exists()] == []
 
 
-def test_the_workflow_covers_every_python_on_every_system() -> None:
+def test_the_workflow_covers_every_python_on_every_system_once() -> None:
     declared = [line.rpartition(" :: ")[2] for line in PROJECT["classifiers"] if " :: Python :: 3." in line]
-    jobs = yaml.safe_load((ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8"))["jobs"]
+    jobs = yaml.safe_load((WORKFLOWS / "ci.yml").read_text(encoding="utf-8"))["jobs"]
     assert all(job["strategy"]["matrix"]["python"] == declared for job in jobs.values())
-    systems = [name.partition("-")[0] for name in jobs["platforms"]["strategy"]["matrix"]["os"]]
-    assert systems == ["ubuntu", "macos", "windows"]
+    listed = [job["strategy"]["matrix"].get("os", [job["runs-on"]]) for job in jobs.values()]
+    assert sorted(name.partition("-")[0] for names in listed for name in names) == ["macos", "ubuntu", "windows"]
     commands = [step["run"] for step in jobs["platforms"]["steps"] if "run" in step]
     assert {"thermicon rank six-icons --people 20", "python -m pytest"} <= set(commands)
+
+
+def test_the_weekly_parts_are_those_that_the_script_knows() -> None:
+    jobs = yaml.safe_load((WORKFLOWS / "weekly.yml").read_text(encoding="utf-8"))["jobs"]
+    known = re.findall(r"^    (\w+)\) .*pytest", (ROOT / ".ci" / "run").read_text(encoding="utf-8"), re.MULTILINE)
+    assert jobs["part"]["strategy"]["matrix"]["part"] == known
+
+
+def test_the_image_compiles_into_a_folder_that_no_home_hides() -> None:
+    image = (ROOT / "Dockerfile").read_text(encoding="utf-8")
+    cache, home = (re.search(rf"^{key}[ =](\S+)$", image, re.MULTILINE) for key in ("ENV THERMICON_CACHE", "WORKDIR"))
+    assert cache and home and not PurePosixPath(cache[1]).is_relative_to(home[1])
+    assert f"--owner=jovyan --group=jovyan --mode=700 {cache[1]}\n" in image
 
 
 def test_the_conda_recipe_requires_what_the_package_requires() -> None:
