@@ -242,10 +242,10 @@ def rig_names() -> tuple[str, ...]:
 def usual_rig(site: str | None) -> str:
     """Name the shipped rig for icons of a site, unless another is given: that of the same name, or thenar.
 
-    >>> usual_rig("fingertip"), usual_rig("cheek"), usual_rig(None)
-    ('fingertip', 'thenar', 'thenar')
+    >>> usual_rig("fingertip"), usual_rig("cheek"), usual_rig("tcs2"), usual_rig(None)
+    ('fingertip', 'thenar', 'thenar', 'thenar')
     """
-    return site if site in rig_names() else "thenar"
+    return site if site in rig_names() and Rig.load(site).site == site else "thenar"
 
 
 def _rig_folder() -> Any:

@@ -14,7 +14,7 @@ from ..near_words import did_you_mean
 from .context import clean
 
 F = TypeVar("F", bound=Callable[..., Any])
-RENAMED = {"norm": "memory"}
+RENAMED = {"norm": "memory now", "intervals": "parameters in Python"}
 LONGEST = 60
 WORDS = {str: "a text", bytes: "bytes", Path: "a path", float: "a number", int: "a whole number",
          bool: "True or False", NoneType: "None", Callable: "a function"}  # fmt: skip
@@ -90,7 +90,7 @@ def checked(function: F) -> F:
         values = [*zip(names, args, strict=False), *((name, each) for name in rest for each in args[len(names) :])]
         for name, value in (*values, *given.items()):
             if name not in hints and name in given:
-                now = f"is called {RENAMED[name]} now" if name in RENAMED else did_you_mean(name, hints)
+                now = f"is called {RENAMED[name]}" if name in RENAMED else did_you_mean(name, hints)
                 raise InputError(f"{place}: {name} {'' if name in RENAMED else 'is no argument; '}{now}")
             if not _fits(value, hints.get(name, Any)):
                 raise InputError(f"{place}: {name} takes {_words(hints[name])}, {_refused(name, value, hints[name])}")

@@ -171,9 +171,9 @@ def _as_wholes(names: tuple[str, str], asked: RigOptions) -> list[Block]:
             raise TraceFileError(
                 f"{name} has {count_of(len(icons), 'icon')}; sets of 2 to {MOST_ICONS:,} icons are compared as a whole"
             )
-    rig = asked.load(sets[0], names[0])
+    rigs = [asked.load(icons, name) for icons, name in zip(sets, names, strict=True)]
     with progress_bar("ranking") as progress:
-        one, other = (rank(icons, rig, progress=progress) for icons in sets)
+        one, other = (rank(icons, rig, progress=progress) for icons, rig in zip(sets, rigs, strict=True))
     first, second = (Path(name).stem for name in names)
     return sets_report((first, second) if first != second else names, (one, other))
 

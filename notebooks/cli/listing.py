@@ -93,11 +93,11 @@ def copy_shipped(name: str, output: Path, changes: Sequence[str] = ()) -> None:
     )
     for names, package, folder, file in kinds:
         if name in names:
-            check_output(output, (Path(file).suffix,), "a copy of it")
+            check_output(output, (Path(file).suffix,), f"a copy of {name}")
             if output.exists():
                 raise OutputError(f"{output} already exists and was kept; give another name")
             if changes and folder != "rigs":
-                raise usage(f"changes keys of a rig, and {name} is one of the shipped {package}", "--set")
+                raise usage(f"changes keys of a rig, and {name} is none", "--set")
             if changes:
                 load_rig(name, changes).save(output, output.stem)
                 note(f"wrote {output}")

@@ -15,7 +15,7 @@ Command = Callable[..., str]
 """Writes a command for the set and rig of the run, from its name and the words that are added."""
 
 PLAYED = ("--to", "csv", "-o", "drives")
-WIDER = "A larger contact area, another site or icons of another kind would help more than these."
+WIDER = "A larger contact area, another site or icons of another kind would help more."
 OF_ICONS = ("detected", "onset")
 
 
@@ -30,10 +30,14 @@ def after_ranking(found: SetReport, command: Command) -> str:
         return command("simulate", "--icon", lost)
     if any(each in OF_ICONS for each in missed) or (not missed and min(found.ranking.felt.detected) < FELT_FROM):
         return _wider(found, command)
-    if missed and len(icons) > 2:
+    if missed == ["count"]:
+        return f"write more icons, then {command('rank')}"
+    if missed and (len(icons) < 3 or {*missed} <= {"time", "energy"}):
+        return f"shorter, weaker or other icons, then {command('rank')}"
+    if missed:
         return command("improve", "--up-to", str(len(icons)), *wanted)
-    if missed or _close(found):
-        return command("improve", "--edits", *wanted)
+    if _close(found):
+        return command("improve", "--edits")
     return command("export", *PLAYED)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from thermicon.icons.number_text import count_of, number, percent
 
 from .blocks import Block, Text, grid
+from .rank_details import trouble_lines
 
 if TYPE_CHECKING:
     from thermicon.perception import Ranking
@@ -20,6 +21,7 @@ def sets_report(names: tuple[str, str], sets: tuple[Ranking, Ranking]) -> list[B
 
     one, other = sets
     rows = [
+        ("rig", *(each.rig for each in sets)),
         ("icons", *(str(len(each.icons)) for each in sets)),
         ("named correctly", *(percent(each.proportion_correct) for each in sets)),
         ("information, bits", *(f"{each.information_bits:.2f}" for each in sets)),
@@ -33,12 +35,18 @@ def sets_report(names: tuple[str, str], sets: tuple[Ranking, Ranking]) -> list[B
             for each in sets
             if each.new_laboratory is not None
         )
-        rows.insert(2, (f"{percent(REACHED_BY)} of people", *(f"from {percent(float(each))}" for each in reached)))
+        rows.insert(3, (f"{percent(REACHED_BY)} of people", *(f"from {percent(float(each))}" for each in reached)))
         share = one.new_laboratory.ahead_of(other.new_laboratory)
-        better, worse = names if share >= 0.5 else names[::-1]
+        better = names[0] if share >= 0.5 else names[1]
+        points = 100.0 * abs(one.proportion_correct - other.proportion_correct)
         tail = (
-            f"{better} is named better than {worse} by {percent(max(share, 1.0 - share))} of people, with the "
-            f"uncertainty of the model ({one.new_laboratory.draws} draws). {tail}"
+            f"{percent(max(share, 1.0 - share))} of people name {better} better, by {number(points)} points in the "
+            f"mean, with the uncertainty of the model ({one.new_laboratory.draws} draws). {tail}"
         )
     crowd = count_of(one.people, "virtual person", "virtual people")
-    return [grid(("", *names), rows, names), Text(f"For {crowd} on the {one.rig} rig. {tail}")]
+    lost = [
+        Text(f"{name}: {line}", "warn")
+        for name, each in zip(names, sets, strict=True)
+        for line in trouble_lines(each.icons, {})
+    ]
+    return [grid(("", *names), rows, names), *lost, Text(f"For {crowd}. {tail}")]

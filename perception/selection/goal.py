@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from thermicon.icons.model.arguments import InputError
+from thermicon.icons.model.arguments import InputError, checked
 from thermicon.icons.near_words import did_you_mean
 
 if TYPE_CHECKING:
@@ -111,6 +111,7 @@ class GoalPart:
         return f"{self.quantity} {known.comparison} {value}{self.whose}"
 
 
+@checked
 @dataclass(frozen=True, slots=True)
 class Goal:
     """What is wanted of a set.
@@ -141,6 +142,7 @@ class Goal:
                 raise GoalError(f"goal: {_same(other, part)}")
 
     @classmethod
+    @checked
     def parse(cls, text: str) -> Goal:
         """Read a goal: parts joined by commas; a `GoalError` says what cannot be read, and where.
 
