@@ -12,7 +12,7 @@ import pytest
 from tests.notebooks.study.conftest import QUICK, write_study
 from thermicon.notebooks.messages import progress_bar
 from thermicon.notebooks.study import build
-from thermicon.notebooks.study.judging import Refused
+from thermicon.notebooks.study.judging import StudyRefused
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a pseudo-terminal")
@@ -36,10 +36,10 @@ def test_a_study_says_its_plan_before_it_is_judged(tmp_path: Path, monkeypatch: 
         yield lambda done, total: told.append("a step")
 
     def refused(*_: Any) -> Any:
-        raise Refused(["stop"])
+        raise StudyRefused(["stop"])
 
     monkeypatch.setattr(build, "judge_drives", refused)
-    with pytest.raises(Refused):
+    with pytest.raises(StudyRefused):
         build.make_plan(build.read_materials(write_study(tmp_path, QUICK)), bar, told.append)
     gap, step, *_, plan, drives = told
     assert (gap, step, drives) == ("gap", "a step", "drives")
