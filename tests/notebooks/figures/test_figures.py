@@ -15,7 +15,7 @@ from thermicon.notebooks.figures.overview import MOST_LINES, scene_figure
 from thermicon.notebooks.figures.print_figure import restyle
 from thermicon.notebooks.figures.set_figures import observed_figure, set_figure
 from thermicon.notebooks.figures.style import COOL, WARM
-from thermicon.notebooks.figures.sweep_figure import COOLS, WARMS
+from thermicon.notebooks.figures.sweep_figure import COOLS, PANELS, WARMS
 from thermicon.notebooks.timeline.scene import scene
 from thermicon.perception import Percept, perceive, rank
 from thermicon.perception.pilot.observed import observed
@@ -90,6 +90,10 @@ def test_a_sweep_marks_what_was_not_reached_and_bands_of_people() -> None:
     points = [held.get_offsets().tolist() for held in ax.collections if isinstance(held, PathCollection)]
     assert points == [[[0.5, 81.0]]]
     assert figure.get_supxlabel() == "driver current limit (A)"
+    same = {column: [1.0, 1.0] for columns, _ in PANELS for column in columns} | {"energy_J": [1.0, 2.0]}
+    figure = overview(pd.DataFrame({"icon": "dip", "contact.area_cm2": [4.0, 9.0], "reached": [True, True], **same}))
+    figure.draw_without_rendering()
+    assert figure.get_tightbbox().width < figure.get_figwidth(), "what is the same at all values is cut off"
 
 
 def test_a_fit_in_a_column_has_its_panels_below_one_another_and_one_key() -> None:
