@@ -232,9 +232,11 @@ class FigureOptions(Options):
     def write_set(self, ranking: Ranking) -> None:
         """Write the figure of a set: distances and confusions; nothing where none was asked for."""
         if self.figure is not None:
-            from ..figures.set_figures import set_figure
+            from ..figures.set_figures import narrowest_mm, set_figure
 
-            self.write(set_figure(ranking, stacked=self.look.narrow))
+            self.write(set_figure(ranking, self.look))
+            if self.look.width_mm is not None and self.look.width_mm < (least := narrowest_mm(ranking.labels)):
+                note(f"note: {len(ranking.labels)} icons can be read in a figure from --paper {least:.0f}mm on")
 
     def write(self, drawn: Any) -> None:
         """Write a figure to its file, and say so; nothing where none was asked for."""

@@ -229,7 +229,7 @@ def condition(
     if figure.figure is not None:
         from ..figures.set_figures import observed_figure
 
-        figure.write(observed_figure(found, stacked=figure.look.narrow))
+        figure.write(observed_figure(found, figure.look))
     last = KEEP_IT
     if keep is not None and drawn is not None:
         _keep(found, keep, drawn)

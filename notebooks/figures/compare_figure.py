@@ -52,7 +52,7 @@ def compare_figure(pairs: Sequence[tuple[str, Aligned]], across: int = ACROSS) -
         Line2D([], [], color=BROAD, lw=4.0, label=f"A  {first.name_a}"),
         Line2D([], [], color=INK, lw=1.3, label=f"B  {first.name_b}"),
     ]
-    figure.legend(handles=handles, loc="outside upper center", ncols=2, frameon=False, fontsize=9)
+    figure.legend(handles=handles, loc="outside upper center", ncols=1 + (across > 1), frameon=False, fontsize=9)
     return figure
 
 

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
     from thermicon.circuit import Session
 
-MOST_NAMED = 16
-"""Plays up to which each has its name written beside its bar."""
+MOST_NAMED, NAMES_INCHES = 16, 0.8
+"""Plays up to which each has its name written above its bar, and the room of the names."""
 
 FELT_K = 0.1
 """Changes of the skin below this get no bar."""
@@ -29,7 +29,8 @@ def session_figure(session: Session) -> Figure:
     """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(9.0, 5.6), layout="constrained")
+    high = 5.6 + NAMES_INCHES * (len(session.plays) <= MOST_NAMED)
+    figure = Figure(figsize=(9.0, high), layout="constrained")
     minutes = session.duration_s > 600.0
     axes = figure.subplots(2, 1, sharex=True, height_ratios=[0.9, 2.2])
     scale = 1.0 / 60.0 if minutes else 1.0
@@ -61,9 +62,10 @@ def _changes(session: Session, ax: Axes, scale: float) -> None:
     ax.axhline(0.0, color=GREY, lw=0.8)
     ax.set_ylabel("skin (K)")
     if len(session.plays) <= MOST_NAMED:
-        top = float(max(high.max(), 0.0))
-        for start, width, play in zip(starts, widths, session.plays, strict=True):
-            ax.text(start + 0.5 * width, top + 0.4, play.icon, fontsize=7, ha="left", va="bottom", rotation=30)
+        names = ax.secondary_xaxis("top")
+        names.set_xticks(starts + 0.5 * widths, [play.icon for play in session.plays], rotation=45, ha="left")
+        names.tick_params(length=0, labelsize=7)
+        names.spines["top"].set_visible(False)
 
 
 def _temperatures(session: Session, ax: Axes, scale: float) -> None:

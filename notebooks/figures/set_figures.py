@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from .style import SCREEN, Look
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -14,18 +17,39 @@ if TYPE_CHECKING:
 
 FLAT = 0.75
 """Height of a cell to its width, where two heat maps stand below one another."""
+CELL_MM, LETTER_MM, LABEL_MM = 3.4, 1.1, 14.0
+"""Widths in print: a cell with its number, a letter of a name, the label of the ordinate with its margins."""
 
 
-def set_figure(ranking: Ranking, stacked: bool = False) -> Figure:
-    """Draw distances (d′) and predicted confusions of one set side by side; stacked in a narrow column, as asked."""
+def narrowest_mm(names: Sequence[str], beside: int = 1) -> float:
+    """How wide heat maps of so many names, one or two beside one another, are at least where each can be read."""
+    return beside * (LABEL_MM + LETTER_MM * _longest(names) + CELL_MM * len(names))
+
+
+def _longest(names: Sequence[str]) -> int:
+    from thermicon.perception.plots.draw_heat import short
+
+    return max(len(short(name)) for name in names)
+
+
+def _side(names: Sequence[str], look: Look) -> tuple[float, bool]:
+    """Inches of a heat map on the screen, and whether two of them stand below one another."""
+    from thermicon.perception.plots.draw_heat import FEW
+
+    cell = 0.45 if len(names) <= FEW else 0.34
+    stacked = look.narrow or (look.width_mm is not None and look.width_mm < narrowest_mm(names, 2))
+    return max(4.2, 1.2 + 0.07 * _longest(names) + cell * len(names)), stacked
+
+
+def set_figure(ranking: Ranking, look: Look = SCREEN) -> Figure:
+    """Draw distances (d′) and predicted confusions of one set side by side, in print below one another as needed."""
     from matplotlib.figure import Figure
 
     from thermicon.perception.plots import draw_heat
 
-    longest = max(map(len, map(draw_heat.short, ranking.labels)))
-    side = max(4.2, 1.2 + 0.07 * longest + 0.45 * len(ranking.labels))
+    side, stacked = _side(ranking.labels, look)
     down, across = (2, 1) if stacked else (1, 2)
-    names = 0.06 * longest if stacked else 0.0  # of the upper one, which stand below the lower one
+    names = 0.06 * _longest(ranking.labels) if stacked else 0.0  # of the upper one, which stand below the lower one
     high = down * (FLAT if stacked else 1.0) * side - names
     figure = Figure(figsize=(across * (side + 0.6), high), layout="constrained")
     distance, confusion = figure.subplots(down, across)
@@ -39,7 +63,7 @@ def set_figure(ranking: Ranking, stacked: bool = False) -> Figure:
     return figure
 
 
-def observed_figure(found: Observed[Any, Any], stacked: bool = False) -> Any:
+def observed_figure(found: Observed[Any, Any], look: Look = SCREEN) -> Any:
     """Draw observed beside predicted answers, and per cent correct before and after; of measurements that alone."""
     from matplotlib.figure import Figure
 
@@ -51,7 +75,7 @@ def observed_figure(found: Observed[Any, Any], stacked: bool = False) -> Any:
     names, counts = list(found.data.trials.icons), found.data.trials.pooled
     observed = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1.0)
     maps = {"Observed": observed, "Predicted": found.conditioned.simulated.pooled.mean(axis=0)}
-    side = max(4.2, 1.2 + 0.07 * max(map(len, names)) + 0.45 * len(names))
+    side, stacked = _side(names, look)
     low = 1.4 + 0.6 * len(found.predictions)
     rows: Any = [["Observed", "Predicted"], ["after"] * 2]
     heights = [side, low]

@@ -20,11 +20,12 @@ if TYPE_CHECKING:
 COOLS = ("#2166ac", "#5aa5dc", "#9ccbee", "#0b3c6f")
 WARMS = ("#e08214", "#f3a95c", "#fbc894", "#7a3603")
 MARKS = "osD^vP*h"
-MOST_TICKS = 6
+MOST_TICKS, LETTER_INCHES, TURNED_INCHES = 6, 0.08, 1.0
+"""Ticks of an axis at most; room of a letter in the key, and of names that stand aslant below a narrow figure."""
 WIDE = 3
 """Panels beside one another, fewer in a column."""
-COLUMN_INCHES, HIGHEST = 5.4, 2.6
-"""Height of all panels of a figure for a column (in print at most 1.2 widths tall), and of one panel."""
+COLUMN_INCHES, HIGHEST = 6.8, 2.6
+"""Height of all panels of a figure for a column (in print at most 1.5 widths tall), and of one panel."""
 PANELS = (
     (("largest_miss_K",), "largest miss (K)"),
     (("current_min_A", "current_max_A"), "current (A), least dashed"),
@@ -71,7 +72,9 @@ def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
         panels = [panel for panel in PANELS if panel[1] not in same] or list(PANELS)
     figure, axes = _small_multiples(len(panels), look.across(2 if what else WIDE))
     handles: dict[str, Any] = {}
-    values = sorted(frame[key].unique())
+    values: list[Any] = sorted(frame[key].unique())
+    if turned := isinstance(values[0], str) and look.narrow:
+        figure.set_figheight(figure.get_figheight() + TURNED_INCHES)
     log = False
     if len(values) > 2 and not isinstance(values[0], str) and values[0] > 0.0:
         ratios, steps = np.diff(np.log(values)), np.diff(values)
@@ -86,10 +89,13 @@ def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
             ax.set_ylim(bottom=0.0)
         if log:
             _ticks_at_values(ax, values)
+        elif turned:
+            ax.set_xticks(range(len(values)), [*frame[key].unique()], rotation=30, ha="right", rotation_mode="anchor")
     for name in [name for name in (INTERVAL, MISSED) if name in handles]:
         handles[name] = handles.pop(name)  # behind the icons
-    key_above: dict[str, Any] = {"loc": "outside upper center", "ncols": 4, "frameon": False, "fontsize": 9}
-    figure.legend(handles.values(), handles.keys(), **key_above)
+    columns = int(figure.get_figwidth() / (0.6 + LETTER_INCHES * max(map(len, handles))))
+    key_above: dict[str, Any] = {"loc": "outside upper center", "frameon": False, "fontsize": 9}
+    figure.legend(handles.values(), handles.keys(), ncols=min(max(columns, 1), 4), **key_above)
     alike = f"the same at all values: {'; '.join(label.partition(' (')[0] for label in same)}" * bool(same)
     below = textwrap.wrap(alike, int(11 * figure.get_figwidth()))
     figure.supxlabel("\n".join([key_label(key), *below]), fontsize=10)

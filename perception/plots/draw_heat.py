@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 LIGHT = ("#ffffff", "#d7e5f2", "#93bcdc", COOL, "#0f3a69")
 EQUAL_CONTRAST = 0.179
 """Relative luminance from which black stands out more than white; either then has 4.5 : 1 at least."""
-MOST_NUMBERED = 30
+FEW, MOST_NUMBERED = 10, 30
+"""Rows up to which numbers are as large as names, and up to which there are numbers."""
 LONGEST_LABEL = 44
 
 
@@ -84,7 +85,7 @@ def heat(
     axes.set_aspect("equal")
     axes.set_xlim(-0.5, len(columns) - 0.5)
     axes.set_ylim(len(rows) - 0.5, -0.5)
-    size = 9.0 if len(rows) <= MOST_NUMBERED else 6.0
+    size = 9.0 if len(rows) <= FEW else 8.0 if len(rows) <= MOST_NUMBERED else 6.0
     axes.set_xticks(np.arange(len(columns)), [short(name) for name in columns], fontsize=size)
     for label in axes.get_xticklabels():
         label.set(rotation=45, ha="right", rotation_mode="anchor")
@@ -96,7 +97,7 @@ def heat(
         if figure is not None:
             figure.colorbar(drawn, ax=axes, shrink=0.6, aspect=30)
         return axes
-    number = 9.0 if len(rows) <= 16 else 7.0
+    number = 9.0 if len(rows) <= FEW else 7.0
     for (i, j), value in np.ndenumerate(values):
         colour = ink_on(drawn.cmap(norm(value)))
         # Two digits at most, as in 100, 9.9 and 0.

@@ -133,7 +133,7 @@ def plot_sensitivity(found: Sensitivity, ax: Axes | None = None) -> Axes:
     axes.spines[["top", "right", "left"]].set_visible(False)
     axes.grid(axis="x", alpha=0.25, linewidth=0.6)
     axes.set_axisbelow(True)
-    axes.set_xlabel("share of the variance between draws of the posterior")
+    axes.set_xlabel("share of the variance\nbetween posterior draws")
     axes.set_title("Constants that carry the doubt", loc="left")
     axes.legend(frameon=False, loc="lower right")
     return axes

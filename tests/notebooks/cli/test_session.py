@@ -92,6 +92,6 @@ def test_the_figure_shows_plays_and_limits(two: Path) -> None:
     changes, temperatures = figure.axes
     labels = {text.get_text() for ax in figure.axes for text in ax.get_legend().get_texts()}
     assert {"cooling in a play", "warming", "skin", "display", "cold receptor", "soft limit of skin, 40 °C"} <= labels
-    assert [text.get_text() for text in changes.texts] == ["cool-step", "warm-step"]
+    assert [text.get_text() for text in changes.child_axes[0].get_xticklabels()] == ["cool-step", "warm-step"]
     assert temperatures.get_ylabel() == "temperature (°C)"
     assert len(changes.patches) >= 4

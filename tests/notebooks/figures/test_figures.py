@@ -14,7 +14,7 @@ from thermicon.notebooks import overview
 from thermicon.notebooks.figures.overview import MOST_LINES, scene_figure
 from thermicon.notebooks.figures.print_figure import restyle
 from thermicon.notebooks.figures.set_figures import observed_figure, set_figure
-from thermicon.notebooks.figures.style import COOL, WARM
+from thermicon.notebooks.figures.style import COOL, WARM, Look
 from thermicon.notebooks.figures.sweep_figure import COOLS, PANELS, WARMS
 from thermicon.notebooks.timeline.scene import scene
 from thermicon.perception import Percept, perceive, rank
@@ -53,19 +53,19 @@ def test_the_maps_of_one_icon_are_one_cell() -> None:
     assert [len(ax.texts) for ax in set_figure(ranking).axes] == [1, 1]
 
 
-@pytest.mark.parametrize("stacked", [False, True])
-def test_observed_answers_stand_beside_the_predicted_ones(stacked: bool) -> None:
+@pytest.mark.parametrize("look", [Look(), Look(85.0)])
+def test_observed_answers_stand_beside_the_predicted_ones(look: Look) -> None:
     icons = load_library("six-icons")
     names = tuple(icon.name for icon in icons)
     found = observed(Trials(names, ("P",), 5.0 * np.eye(6)[None] + 1.0), icons, "thenar", draws=20)
-    seen, predicted, correct = observed_figure(found, stacked).axes
+    seen, predicted, correct = observed_figure(found, look).axes
     assert {text.get_text() for text in seen.texts} == {"55", "9.1"}
     assert len(predicted.texts) == 36 and "before and after" in correct.get_title("left")
 
 
 def test_two_maps_below_one_another_name_the_columns_once() -> None:
     ranking = rank(load_library("six-icons"), Rig.load("thenar"), people=2)
-    figure = set_figure(ranking, stacked=True)
+    figure = set_figure(ranking, Look(85.0))
     restyle(figure, 85.0)
     upper, lower = figure.axes
     assert upper.get_xticklabels() == [] and len(lower.get_xticklabels()) == 6
