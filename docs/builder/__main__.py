@@ -18,7 +18,6 @@ from command_options import command_options
 from data_tables import DATA_TABLES
 from gallery import Gallery
 from key_tables import KEY_TABLES
-from page_pictures import PagePictures
 from paper_figures import circuit_diagram, paper_figures
 from posterior_tables import TABLES as POSTERIOR_TABLES
 from python_names import python_index, python_pages
@@ -37,7 +36,7 @@ def build(folder: Path, *, execute: bool) -> int:
     code = code_digest()
     gallery_digest = hashlib.sha256(code.encode() + drawn_by).hexdigest()
     kept = folder / "predicted" / gallery_digest[:16] if execute else None
-    site = Staging(folder / "source", {}, PagePictures(kept))
+    site = Staging(folder / "source", {}, kept)
     gallery = Gallery(kept, site.write)
     site.slots.update(POSTERIOR_TABLES | KEY_TABLES | DATA_TABLES)
     site.slots.update(

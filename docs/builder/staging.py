@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
-from page_pictures import MARK, PagePictures, command_lines
+from page_pictures import MARK, command_lines, page_picture
 from pygments.lexers import get_lexer_by_name
 from sections import front_page, read_sections, with_toctree
 
@@ -31,7 +31,7 @@ SLOT = re.compile(r"<!-- site: (?P<name>[\w ]+) -->\n(?P<meanwhile>.*?)<!-- end 
 """What only the site has, made from the program; a code host shows the sentences between the marks instead."""
 
 NOT_SEARCHED = ("contribute/changelog.md", "reference/errors.md", "reference/refusals.md")
-"""Pages that hold a little of everything: in a search they would stand before the page on what was asked."""
+"""Pages with a little of everything: a search would name them before the page on what was asked."""
 
 
 class StagingError(RuntimeError):
@@ -40,11 +40,11 @@ class StagingError(RuntimeError):
 
 @dataclass(frozen=True, slots=True)
 class Staging:
-    """The folder that holds the sources of the site, what fills its pages, and what was written so far."""
+    """The folder of the site's sources, what fills its pages, where pictures are kept if any, and what was written."""
 
     folder: Path
     slots: dict[str, Callable[[], str]]
-    pictures: PagePictures = field(default_factory=lambda: PagePictures(None))
+    pictures: Path | None = None
     written: set[str] = field(default_factory=set)
 
     def stage(self, more: dict[str, str]) -> None:
@@ -87,8 +87,9 @@ class Staging:
             return self.slots[slot["name"]]().rstrip() + "\n"
 
         def picture(mark: re.Match[str]) -> str:
-            if (drawn := self.pictures.picture(mark, text)) is None:
+            if self.pictures is None:
                 return ""
+            drawn = page_picture(mark, text, self.pictures)
             self.write(f"pictures/{drawn.name}", drawn.read_bytes())
             lines = " && ".join(f"thermicon {line}" for line in command_lines(mark))
             return f"![{mark['alt']}](/pictures/{drawn.name})\n\n*{mark['alt']}*: `{lines}`\n"

@@ -93,13 +93,12 @@ def test_every_job_has_a_picture_that_commands_can_draw(builder: dict[str, Modul
 
 def test_a_picture_is_drawn_from_the_files_of_its_page(builder: dict[str, ModuleType], tmp_path: Path) -> None:
     page = "Save as `a.cue`:\n\n```\ncue 1\nicon a { cool by 4 °C at 4 °C/s }\n```\n\n"
-    pictures = builder["page_pictures"].PagePictures(tmp_path / "kept")
-    site = builder["staging"].Staging(tmp_path / "site", {}, pictures)
+    site = builder["staging"].Staging(tmp_path / "site", {}, tmp_path / "kept")
     text = site.filled(f"{page}<!-- picture: simulate a.cue | An icon -->\n", PurePosixPath("docs/x.md"))
     [picture] = (tmp_path / "site" / "pictures").iterdir()
     assert f"![An icon](/pictures/{picture.name})" in text
     assert picture.read_bytes().startswith(b"\x89PNG")
-    with pytest.raises(builder["page_pictures"].PictureError, match=r"thermicon simulate b\.cue --figure"):
+    with pytest.raises(RuntimeError, match=r"thermicon simulate b\.cue --figure"):
         site.filled(f"{page}<!-- picture: simulate b.cue | Another -->\n", PurePosixPath("docs/x.md"))
 
 
