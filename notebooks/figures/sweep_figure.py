@@ -97,7 +97,8 @@ def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
     key_above: dict[str, Any] = {"loc": "outside upper center", "frameon": False, "fontsize": 9}
     figure.legend(handles.values(), handles.keys(), ncols=min(max(across, 1), 4), **key_above)
     alike = f"the same at all values: {'; '.join(label.partition(' (')[0] for label in same)}" * bool(same)
-    below = textwrap.wrap(alike, int(11 * figure.get_figwidth()))
+    # Print is wrapped anew for its letters.
+    below = textwrap.wrap(alike, int(11 * figure.get_figwidth()) if look is SCREEN else len(alike) + 1)
     figure.supxlabel("\n".join([key_label(key), *below]), fontsize=10)
     return figure
 
