@@ -92,9 +92,9 @@ def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
             ax.set_xticks(range(len(values)), [*frame[key].unique()], rotation=30, ha="right", rotation_mode="anchor")
     for name in [name for name in (INTERVAL, MISSED) if name in handles]:
         handles[name] = handles.pop(name)  # behind the icons
-    columns = int(figure.get_figwidth() / (0.6 + LETTER_INCHES * max(map(len, handles))))
+    beside = int(figure.get_figwidth() / (0.6 + LETTER_INCHES * max(map(len, handles))))
     key_above: dict[str, Any] = {"loc": "outside upper center", "frameon": False, "fontsize": 9}
-    figure.legend(handles.values(), handles.keys(), ncols=min(max(columns, 1), 4), **key_above)
+    figure.legend(handles.values(), handles.keys(), ncols=min(max(beside, 1), 4), **key_above)
     below = [f"the same at all values: {'; '.join(label.partition(' (')[0] for label in same)}"] * bool(same)
     figure.supxlabel("\n".join([key_label(key), *below]), fontsize=10)
     return figure
