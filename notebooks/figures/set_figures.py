@@ -36,7 +36,7 @@ def _side(names: Sequence[str], look: Look) -> tuple[float, bool]:
     """Inches of a heat map on the screen, and whether two of them stand below one another."""
     from thermicon.perception.plots.draw_heat import FEW
 
-    cell = 0.45 if len(names) <= FEW else 0.34
+    cell = 0.45 if len(names) <= FEW else 0.28
     stacked = look.narrow or (look.width_mm is not None and look.width_mm < narrowest_mm(names, 2))
     return max(4.2, 1.2 + 0.07 * _longest(names) + cell * len(names)), stacked
 

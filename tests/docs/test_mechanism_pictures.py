@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
-from matplotlib.text import Text
 
 from mechanisms.draw_effects import STAGES, plot_effect, plot_onset_stages
 from mechanisms.draw_evidence import (
@@ -16,6 +15,7 @@ from mechanisms.draw_evidence import (
 )
 from mechanisms.effects import EFFECTS, Curve, Effect
 from mechanisms.onset_stages import onset_stages
+from tests.legible import troubles
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
 from thermicon.perception import Observer
@@ -26,16 +26,6 @@ effect_of = pytest.fixture(scope="module")(lambda: {name: effect() for name, eff
 
 def tick_names(axes: Axes) -> list[str]:
     return [label.get_text() for label in axes.get_yticklabels()]
-
-
-def inside(axes: Axes) -> bool:
-    """Whether titles, labels and numbers of the axes lie inside the figure."""
-    figure = axes.figure
-    figure.draw_without_rendering()
-    ticks = [*axes.get_xticklabels(), *axes.get_yticklabels(), *axes.get_xticklabels(minor=True)]
-    texts = [text for text in axes.findobj(Text) if text not in ticks] + axes.get_yticklabels()
-    boxes = [text.get_window_extent() for text in texts if text.get_text() and text.get_visible()]
-    return all(figure.bbox.x0 <= b.x0 and b.x1 <= figure.bbox.x1 and figure.bbox.y0 <= b.y0 for b in boxes)
 
 
 def named(effect: Effect, start: str) -> Curve:
@@ -50,7 +40,7 @@ def test_an_effect_is_drawn_with_every_curve_and_its_units(effect_of: dict[str, 
     assert (axes.get_xlabel(), axes.get_ylabel()) == (effect.x_label, effect.y_label)
     looks = [(line.get_color(), line.get_linestyle(), line.get_linewidth()) for line in axes.lines]
     assert len(set(looks)) == len(looks), "two curves look alike"
-    assert inside(axes)
+    assert troubles(axes.figure) == []
 
 
 def cold_is_felt_late_with_its_limit(limits: Effect) -> bool:
@@ -110,7 +100,7 @@ def test_stages_add_up_to_the_onset_and_are_drawn_in_order() -> None:
     for each in stages:
         assert each.nerve_s + each.cord_s == pytest.approx(person.delay_s(each.channel, person.path_m("thenar")))
         assert each.decision_s == person.decision_s
-    assert inside(axes)
+    assert troubles(axes.figure) == []
 
 
 def test_the_ablation_is_drawn_by_its_difference() -> None:
@@ -119,7 +109,7 @@ def test_the_ablation_is_drawn_by_its_difference() -> None:
     drawn = [bar.get_width() for bar in axes.patches[1:]]
     assert drawn == sorted(row.difference for row in rows if row.without or row.difference)
     assert "heat flow" in tick_names(axes)
-    assert inside(axes)
+    assert troubles(axes.figure) == []
 
 
 def test_missed_rows_have_an_open_marker() -> None:
@@ -128,7 +118,7 @@ def test_missed_rows_have_an_open_marker() -> None:
     points = [line for line in axes.lines if line.get_marker() in "os^" and line.get_linestyle() == "None"]
     hollow = [line.get_markerfacecolor() == "w" for line in points]
     assert hollow == [abs(row.score) > 1.959964 for row in rows]
-    assert inside(axes)
+    assert troubles(axes.figure) == []
 
 
 def test_predictions_are_drawn_over_the_published_number() -> None:
@@ -137,7 +127,7 @@ def test_predictions_are_drawn_over_the_published_number() -> None:
     interval, middle = axes.lines[1], axes.lines[2]
     assert list(interval.get_xdata()) == [0.5, 3.0]
     assert float(np.asarray(middle.get_xdata())[0]) == 1.5
-    assert inside(plot_published_predicted(load_predictions()))
+    assert troubles(plot_published_predicted(load_predictions()).figure) == []
 
 
 def test_constants_are_drawn_by_how_far_they_were_narrowed() -> None:
@@ -145,4 +135,4 @@ def test_constants_are_drawn_by_how_far_they_were_narrowed() -> None:
     shown = tick_names(axes)
     assert shown[0] == min((c for c in load_constants() if c.unit != "SD"), key=lambda c: c.narrowed).name
     assert "thenar cold" not in shown
-    assert inside(axes)
+    assert troubles(axes.figure) == []

@@ -1,5 +1,4 @@
 from collections.abc import Sequence
-from itertools import combinations
 from statistics import NormalDist
 from types import SimpleNamespace
 
@@ -7,6 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
+from tests.legible import troubles
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
 from thermicon.perception import Percept, Ranking, plot, rank
@@ -23,11 +23,8 @@ def ranking() -> Ranking:
 
 def boxes(axes: Axes, texts: Sequence[str]) -> list[tuple[float, float, float, float]]:
     """Boxes of texts, none of which covers another."""
-    axes.figure.draw_without_rendering()
-    found = [t.get_window_extent().extents for t in axes.texts if t.get_text() in texts]
-    for a, b in combinations(found, 2):
-        assert min(a[2], b[2]) - max(a[0], b[0]) <= 0.5 or min(a[3], b[3]) - max(a[1], b[1]) <= 0.5
-    return found
+    assert troubles(axes.get_figure(root=True)) == []
+    return [t.get_window_extent().extents for t in axes.texts if t.get_text() in texts]
 
 
 def test_near_icons_stand_side_by_side() -> None:
