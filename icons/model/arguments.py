@@ -142,7 +142,10 @@ def _fits(value: Any, hint: Any) -> bool:
         some = hasattr(value, "__getitem__" if origin is Sequence else "__iter__")
         if not some or isinstance(value, str | bytes | Mapping) or getattr(value, "ndim", 1) != 1:
             return False
-        return iter(value) is value or all(_fits(each, inner[0]) for each in value)
+        if iter(value) is value:
+            return True
+        each = {type(one): one for one in value}.values() if isinstance(inner[0], type) else value  # may be 100,000
+        return all(_fits(one, inner[0]) for one in each)
     if origin is Callable or origin is Any or not isinstance(origin, type):
         return origin is not Callable or callable(value)
     return isinstance(value, origin)
