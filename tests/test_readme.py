@@ -1,7 +1,7 @@
 """What README.md and docs/ show is what the program does: their commands and snippets are run, the output compared.
 
-``python tests/test_readme.py`` regenerates outputs and pictures. Digits are not compared, since the last one may differ
-between machines; words, names and order are. A command that several pages show runs once (`RUNS`).
+``python tests/test_readme.py`` regenerates outputs and pictures. Numbers may differ by 20 % and one of their last digit, as
+machines round differently; words, names and order may not. A command that several pages show runs once (`RUNS`).
 """
 
 import contextlib
@@ -27,6 +27,7 @@ PAGES = (README, *sorted((ROOT / "docs").rglob("*.md")))
 LINKING = (*PAGES, ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md")
 NAMES = [page.relative_to(ROOT).as_posix() for page in PAGES]
 FILE = re.compile(r"Save as `(?P<name>[\w.-]+)`[^\n]*\n\n```\w*\n(?P<text>.*?)```", re.DOTALL)
+NUMBER = re.compile(r"[-−+]?\d+(\.\d+)?")
 BLOCK = re.compile(r"```(?P<kind>console|python)\n(?P<text>.*?)```", re.DOTALL)
 
 
@@ -101,7 +102,19 @@ def regenerated(page: str) -> str:
 
 def masked(text: str) -> list[str]:
     """Return the words of a text with digits and signs taken out of its numbers."""
-    return re.sub(r"[-−+]?\d+(\.\d+)?", "#", text).split()
+    return NUMBER.sub("#", text).split()
+
+
+def far(shown: str, printed: str) -> list[tuple[str, str]]:
+    """Numbers of a text that are more than 20 % and one of their last digit from those of another with its words."""
+
+    def is_far(one: str, other: str) -> bool:
+        a, b = (float(number.replace("−", "-")) for number in (one, other))
+        last_digit = 10.0 ** -min(len(number.partition(".")[2]) for number in (one, other))
+        return abs(a - b) > 0.2 * max(abs(a), abs(b)) + last_digit
+
+    numbers = ([each[0] for each in NUMBER.finditer(text)] for text in (shown, printed))
+    return [pair for pair in zip(*numbers, strict=True) if is_far(*pair)]
 
 
 def anchors(page: Path) -> set[str]:
@@ -127,7 +140,14 @@ def broken_links(text: str, page: Path) -> list[str]:
 )
 def test_a_page_shows_what_happens(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
-    assert masked(regenerated(text)) == masked(text), "if it is right: python tests/test_readme.py"
+    printed = regenerated(text)
+    assert masked(printed) == masked(text), "if it is right: python tests/test_readme.py"
+    assert far(text, printed) == [], "if they are right: python tests/test_readme.py"
+
+
+def test_a_number_of_another_version_is_noticed() -> None:
+    assert far("93 % of 12.5 s at −6 °C, 0.2 A", "92 % of 14.9 s at −5 °C, 0.1 A") == []
+    assert far("93 % at −6 °C for 12.5 s", "70 % at 6 °C for 16.5 s") == [("93", "70"), ("−6", "6"), ("12.5", "16.5")]
 
 
 def test_the_readme_is_a_front_door_of_two_commands() -> None:

@@ -241,5 +241,8 @@ def on_all_cores(work: Callable[[Index], None], lanes: Index, most: int | None =
     if used == 1:
         work(lanes)
         return
-    with ThreadPoolExecutor(used) as pool:
+    pool = ThreadPoolExecutor(used)
+    try:
         list(pool.map(work, np.array_split(lanes, used)))
+    finally:
+        pool.shutdown(wait=False)  # who interrupts waits for no lane

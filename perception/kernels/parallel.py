@@ -24,9 +24,12 @@ def over_rows(work: Callable[[slice], None], rows: int, size: int) -> None:
         work(slice(0, rows))
         return
     edges = [rows * k // chunks for k in range(chunks + 1)]
-    with ThreadPoolExecutor(chunks) as pool:
+    pool = ThreadPoolExecutor(chunks)
+    try:
         for done in [pool.submit(work, slice(a, b)) for a, b in pairwise(edges)]:
             done.result()
+    finally:
+        pool.shutdown(wait=False)  # who interrupts waits for no slice
 
 
 def in_order(
