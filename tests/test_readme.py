@@ -1,6 +1,6 @@
 """What README.md and docs/ show is what the program does: their commands and snippets are run, the output compared.
 
-``python tests/test_readme.py`` regenerates outputs and pictures. Numbers may differ by 20 % and one of their last digit,
+``python tests/test_readme.py`` regenerates outputs and pictures. Numbers may differ by 20 % and one of the last digit,
 as machines round differently; words, names and order may not. A command that several pages show runs once (`RUNS`).
 """
 
