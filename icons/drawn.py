@@ -1,4 +1,4 @@
-"""How results show themselves: pictures, whose room loads when one is first made, and tables as files."""
+"""Pictures and tables of results, as methods that load the drawing module only on demand."""
 
 from __future__ import annotations
 

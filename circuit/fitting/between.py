@@ -1,4 +1,4 @@
-"""What the rows of a log do not tell of its drive, and the drive of a long log in fewer rows."""
+"""The unknown drive between the rows of a log, and a long log's drive in fewer rows."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Runs of logs: what drives each, what is not known of it between rows, and what was measured."""
+"""Runs of logs with their drives, known or not, and their measured columns."""
 
 from __future__ import annotations
 
