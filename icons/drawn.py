@@ -1,4 +1,4 @@
-"""Pictures and tables of results, as methods that load the drawing module only on demand."""
+"""Pictures and tables of results with a drawing module that loads only on demand."""
 
 from __future__ import annotations
 

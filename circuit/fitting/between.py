@@ -1,4 +1,4 @@
-"""The unknown drive between the rows of a log, and a long log's drive in fewer rows."""
+"""The drive between the rows of a log, unknown or thinned to fewer rows."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Runs of logs with their drives, known or not, and their measured columns."""
+"""Runs of logs: drives, known or not, with their measured columns."""
 
 from __future__ import annotations
 

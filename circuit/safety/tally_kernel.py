@@ -1,4 +1,4 @@
-"""Compiled integrals of thermal dose and checks of runs against the rules, lane by lane."""
+"""Compiled integrals of thermal dose and checks of runs against the rules for many lanes."""
 
 # mypy: disable-error-code="no-untyped-def,misc"
 # numba infers the types here, and its decorators have none.

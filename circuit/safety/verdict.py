@@ -1,4 +1,4 @@
-"""The verdict on one run: the safety limits, with a summary of target, extremes and energy.
+"""The verdict on one run: safety limits with a summary of target, extremes, energy.
 
 This is not a medical or ethical clearance, and a hardware cut-off is required.
 """

@@ -1,4 +1,4 @@
-"""The source text of a cue file as lines, columns and tokens."""
+"""The source text of a cue file with its lines, columns, tokens."""
 
 import re
 from bisect import bisect_right

@@ -1,4 +1,4 @@
-"""An icon: a name with statements, their context and metadata, checked on construction."""
+"""An icon: a name with statements, their context, metadata, all checked on construction."""
 
 import hashlib
 from collections.abc import Iterator
