@@ -1,4 +1,4 @@
-"""What README.md and docs/ show is what the program does: their commands and snippets are run, the output compared.
+"""Commands or snippets in README.md and docs/, run again with the shown output.
 
 ``python tests/test_readme.py`` regenerates outputs and pictures. Digits are not compared, since the last one may differ
 between machines; words, names and order are. A command that several pages show runs once (`RUNS`).
