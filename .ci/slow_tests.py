@@ -1,4 +1,4 @@
-"""Print the tests whose slow part a change calls for, one path per line.
+"""The tests whose slow part a change calls for, one path per line.
 
 ``.ci/slow_tests.py`` compares with the commit before the change; ``.ci/slow_tests.py FILE ...`` takes a list of changed
 files instead. A changed room calls for its tests, what archives are made of for their build, what a page shows for that

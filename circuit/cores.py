@@ -1,4 +1,4 @@
-"""How many cores a computation may use, and one thread for its linear algebra; results do not depend on it."""
+"""The number of cores of a computation, with one thread for its linear algebra."""
 
 import os
 from collections.abc import Iterator

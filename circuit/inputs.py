@@ -1,4 +1,4 @@
-"""Reading files that people wrote: one clear error each for what is not a readable text file, and faults of keys."""
+"""Readers of text or TOML files, with one clear error for each fault."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which program computed a result: its version, and a digest of the files that determine the numbers."""
+"""The program that computed a result: its version, with a digest of the files that determine the numbers."""
 
 import hashlib
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Exponential and logarithm without branches or calls, so that loops over them run in the processor's vectors.
+"""Exponential and logarithm without branches or calls for vectorised loops.
 
 Cody and Waite's reduction with a Taylor polynomial for the exponential, and the series of the inverse hyperbolic
 tangent for the logarithm: both are within 5 units in the last place, which tests compare with the standard library.

@@ -1,4 +1,4 @@
-"""Settings of the docs site; ``python docs/builder`` gives Sphinx the folder that it has to read."""
+"""Settings of the docs site for Sphinx."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How results show themselves: pictures, whose room loads when one is first made, and tables as files."""
+"""Pictures and tables of results with a drawing module that loads only on demand."""
 
 from __future__ import annotations
 

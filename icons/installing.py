@@ -1,4 +1,4 @@
-"""How a package that is missing is added to the environment that runs."""
+"""The command that adds a missing package to the running environment."""
 
 import sys
 from importlib.util import find_spec

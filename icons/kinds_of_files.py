@@ -1,4 +1,4 @@
-"""What a text file is, by words that only one kind has: said where it is given in place of another kind."""
+"""The kind of a text file, recognised by words that only one kind has."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Start of the command: Ctrl-C during imports, and libraries that are missing, end it without a traceback."""
+"""Start of the command, without a traceback for Ctrl-C or a missing library."""
 
 import os
 import sys

@@ -1,4 +1,4 @@
-"""Arrays: the name of their type, copies that nobody changes, and the form that kernels take."""
+"""Arrays: the name of their type, read-only copies, the form that kernels take."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray

@@ -1,4 +1,4 @@
-"""What tests of several rooms build or wait for: messages, steps, a laboratory, quantiles, answers of a server."""
+"""Builders and waiters for tests of several rooms: messages, steps, a laboratory, quantiles, answers of a server."""
 
 import socket
 import time

@@ -1,4 +1,4 @@
-"""Count the lines that are maintained, room by room: ``python tests/count.py`` prints the table for a release."""
+"""The count of maintained lines, room by room: ``python tests/count.py`` prints the table for a release."""
 
 from collections import Counter
 from dataclasses import dataclass

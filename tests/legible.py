@@ -1,4 +1,4 @@
-"""What keeps a drawn figure from being read."""
+"""Faults of legibility in a drawn figure."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Closed forms of a Peltier module, by which tests judge what is computed."""
+"""Closed forms of a Peltier module."""
 
 from math import sqrt
 

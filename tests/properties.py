@@ -1,4 +1,4 @@
-"""Properties that hold for any input: few examples in the ordinary suite, all of them in the slow one."""
+"""Properties of any input: few examples in the ordinary suite, all in the slow one."""
 
 from collections.abc import Callable
 from typing import Any

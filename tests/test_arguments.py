@@ -1,4 +1,4 @@
-"""What people give by mistake: every public function works, or says in an InputError which argument takes what."""
+"""Wrong arguments of every public function: accepted, or an InputError that names argument and cure."""
 
 import contextlib
 import importlib

@@ -1,4 +1,4 @@
-"""The budget of the house: lines that are maintained, public names, options of commands, words of docs.
+"""The budget of the house: maintained lines, public names, options of commands, words of docs.
 
 `budget.toml` holds the greatest numbers; `python tests/count.py` prints the lines of each room.
 """

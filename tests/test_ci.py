@@ -1,4 +1,4 @@
-"""The scripts of ``.ci``, what stays ordinary of the browser tests, and the paths that CONTRIBUTING names."""
+"""The scripts of ``.ci``, the ordinary browser tests, the paths in CONTRIBUTING."""
 
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""Every public name of the four packages has a numpydoc docstring that agrees with its signature and names units."""
+"""Docstrings: numpydoc form, arguments and units of public names; a single idea in the first line of modules."""
 
 import importlib
 import inspect

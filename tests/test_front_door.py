@@ -1,4 +1,4 @@
-"""Front doors load a room when one of its names is asked for, and list each name once, for people and type checkers."""
+"""Front doors that load a room on demand, with one list of names for people and type checkers."""
 
 import ast
 import pydoc

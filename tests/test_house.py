@@ -1,4 +1,4 @@
-"""The house rules that a machine can check, so that nobody has to remember them in a review."""
+"""The house rules that a machine can check."""
 
 import ast
 import doctest

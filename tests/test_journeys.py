@@ -1,4 +1,4 @@
-"""How many modules five journeys of a user enter: whoever follows one has to read no more than these.
+"""The number of modules that five journeys of a user enter.
 
 A module is entered where one of its functions runs; what only defines names, as on import, is not counted.
 """

@@ -1,4 +1,4 @@
-"""The ladder: a package imports only what is upstream, and inside it a room only from rooms below, lazily too.
+"""The ladder: imports only from packages upstream or rooms below.
 
 Imports for types alone (under ``TYPE_CHECKING``) are not executed and do not count: drawing rooms stand at the bottom
 and name the objects that they draw by type only.

@@ -1,4 +1,4 @@
-"""The package as a stranger gets it: source archive and wheel, installed elsewhere, run from a folder of their own."""
+"""The package as a stranger gets it: source archive or wheel, installed elsewhere."""
 
 import json
 import os

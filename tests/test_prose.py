@@ -1,4 +1,4 @@
-"""Sentences are made once, of objects, and read by people alone; only notebooks know what an option is called."""
+"""Sentences made once from objects, never read by code."""
 
 import ast
 import re

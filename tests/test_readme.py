@@ -1,4 +1,4 @@
-"""What README.md and docs/ show is what the program does: their commands and snippets are run, the output compared.
+"""Commands or snippets in README.md and docs/, run again with the shown output.
 
 ``python tests/test_readme.py`` regenerates outputs and pictures. Numbers may differ by 20 % and one of the last digit,
 as machines round differently; words, names and order may not. A command that several pages show runs once (`RUNS`).

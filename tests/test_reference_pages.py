@@ -1,4 +1,4 @@
-"""The pages of docs/reference/ list every rig key, command, column of a trace, key of a ranking and of a sidecar."""
+"""The pages of docs/reference/ as complete lists of keys, commands, columns."""
 
 import json
 import re

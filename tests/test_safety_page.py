@@ -1,4 +1,4 @@
-"""docs/explain/safety.md states the constants of the code, and names tests and files that exist."""
+"""The constants, tests and files that docs/explain/safety.md names."""
 
 import ast
 import re

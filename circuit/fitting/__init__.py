@@ -1,1 +1,1 @@
-"""Rig parameters from measured logs: values with intervals, what a log cannot identify, and what to measure instead."""
+"""Rig parameters from measured logs, with intervals."""

@@ -1,4 +1,4 @@
-"""What the rows of a log do not tell of its drive, and the drive of a long log in fewer rows."""
+"""The drive between the rows of a log, unknown or thinned to fewer rows."""
 
 import numpy as np
 

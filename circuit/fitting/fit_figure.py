@@ -1,4 +1,4 @@
-"""Picture of a fit: measured and fitted courses, and their residuals below."""
+"""The figure of a fit: measured and fitted courses above their residuals."""
 
 from __future__ import annotations
 

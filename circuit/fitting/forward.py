@@ -1,4 +1,4 @@
-"""A run simulated on a rig, by the same functions that simulate icons: what each measured column should be.
+"""The forward model of a fit: a run simulated by the same functions that simulate icons.
 
 `display_C` is what the thermistor on the display reads: the first probe of the rig with place "display", or else the
 thermistor of its controller, or else the plate itself.

@@ -1,4 +1,4 @@
-"""What a log identifies, what it does not, and which further measurement would."""
+"""Identifiability of rig parameters from a log."""
 
 import math
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""The keys of a rig that a log can be fitted for: scale, bounds, and how well each must be known to be of use."""
+"""The keys of a rig that can be fitted to a log: scale, bounds, useful precision."""
 
 import json
 import re

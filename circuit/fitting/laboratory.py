@@ -1,4 +1,4 @@
-"""A synthetic laboratory: logs that a rig would give, with the noise of instruments, and what logs would identify."""
+"""A synthetic laboratory: the logs that a rig would give, with the noise of instruments."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What a fit says beside its numbers: on drives, starts, sensors and clocks, and what is not narrowed for which reason.
+"""Remarks of a fit about its drives, starts, sensors, clocks, or keys left as wide as before.
 
 Of several causes of one misfit the first is named: a column that is late and explains it all, a fit that did not come
 to rest, a start that was not steady, and only then keys that are held fixed.

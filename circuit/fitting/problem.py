@@ -1,4 +1,4 @@
-"""The fit as numbers: free keys and what is fitted along with them, residuals of all channels, and their derivatives.
+"""The least-squares problem of a fit: free parameters, residuals, derivatives.
 
 Nobody's skin is that of the rig file: the prior of a factor of its layers is the spread between people. What is a times
 as thick is simulated as equally thick with 1/a of the conductivity and a times the density and perfusion, which is the

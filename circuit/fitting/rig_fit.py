@@ -1,4 +1,4 @@
-"""The result of a fit: parameters with intervals, correlations, residuals, and the rig they make."""
+"""The result of a fit: parameters with intervals, residuals, the fitted rig."""
 
 from __future__ import annotations
 

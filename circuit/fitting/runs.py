@@ -1,4 +1,4 @@
-"""Runs of logs: what drives each, what is not known of it between rows, and what was measured."""
+"""Runs of logs: drives, known or not, with their measured columns."""
 
 from __future__ import annotations
 

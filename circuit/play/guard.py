@@ -1,4 +1,4 @@
-"""The guard of a player: it plays rows only after rest and pause, and switches off where something is wrong."""
+"""The guard of a player: it plays rows after rest and pause but switches off where something is wrong."""
 
 from __future__ import annotations
 

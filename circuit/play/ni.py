@@ -1,4 +1,4 @@
-"""An NI analogue output as a line: single voltages, and blocks that its own clock puts out."""
+"""An NI analogue output as a line: single voltages, or blocks clocked by the hardware."""
 
 from __future__ import annotations
 

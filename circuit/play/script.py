@@ -1,4 +1,4 @@
-"""The script that plays an export on one line: its numbers, the texts of guard and line, and functions for users.
+"""The script that plays an export on one line: its numbers with the source text of guard and line.
 
 The numbers stand at the top, where a laboratory may change them; every function reads them when it is called.
 """

@@ -1,1 +1,1 @@
-"""thermicon.circuit.rig: rig files → module, heat sink, driver, contact, skin and what is uncertain of them."""
+"""thermicon.circuit.rig: rig files → module, heat sink, driver, contact, skin, uncertainty."""

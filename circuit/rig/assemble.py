@@ -1,4 +1,4 @@
-"""Parts of a rig from its file, in SI: module with heat sink and driver, skin, and probes."""
+"""Assembly of a rig's parts from its file, in SI units."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

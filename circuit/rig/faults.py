@@ -1,4 +1,4 @@
-"""Keys of a rig file: what their values may be, the units that end them, and sentences on what is wrong or unusual."""
+"""Checks of the values of a rig's keys, with a message for each wrong or unusual one."""
 
 from __future__ import annotations
 

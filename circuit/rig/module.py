@@ -1,4 +1,4 @@
-"""The Peltier module: heat absorbed, voltage, and its parameters from what a data sheet prints.
+"""The Peltier module: heat absorbed, voltage, parameters from a data sheet.
 
 Equations: Lineykin & Ben-Yaakov, IEEE Trans. Ind. Appl. 43 (2007) 505, and their four-figure form, exact in Qmax.
 Current is positive when it cools the skin side.

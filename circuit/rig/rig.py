@@ -1,4 +1,4 @@
-"""A rig: module, heat sink, driver, contact, air and skin, as one frozen object read from a rig file."""
+"""A rig: one frozen object with module, driver, contact, air, skin, read from a rig file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A rig in words, for people who did not write its file: what to know before trusting it, and what is unusual."""
+"""A rig in words: limitations of its data, unusual values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The schema of a rig file: its keys, their units and their limits."""
+"""The schema of a rig file: keys, units, limits."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache

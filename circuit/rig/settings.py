@@ -1,4 +1,4 @@
-"""The document of a rig: changes by dotted keys or texts of the form `key=value`, and its text as a rig file."""
+"""The document of a rig, with changes by dotted keys or ``key=value`` texts."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Skin as layers, and as a column of lumps: capacities, perfusion and the resistances between them."""
+"""Skin as layers and as a column of lumps."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""thermicon.circuit.safety: limits, exposure, and a drive judged in its worst case."""
+"""thermicon.circuit.safety: limits, exposure, worst-case verdicts."""

@@ -1,6 +1,4 @@
-"""What the gate finds: checks of runs against rules, how near they come, when and in which scenario; and what
-the hardware must prevent. `words` turns them into sentences.
-"""
+"""Findings of the gate as records (in words: `words.py`): checks of the rules, demands on the hardware."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass

@@ -1,6 +1,4 @@
-"""The gate of safety: a drive checked against every rule, in the worst case over the rig, over what follows the drive
-and over how often it is played.
-"""
+"""The safety gate: a drive checked against every rule in the worst case over rig, endings, repetition."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Where a cut-off acts: beyond what the display reaches without a fault, and where it may stay without limit of time.
+"""Cut-off temperatures: beyond the display's fault-free extremes, at levels that skin tolerates for any length of time.
 
 A driver that is stuck at a current between its limits takes the display to a level at which it stays. Neither watchdog
 nor cut-off acts where that lies inside the cut-off, so a display held there must be safe by itself. The skin under a

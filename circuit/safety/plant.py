@@ -1,4 +1,4 @@
-"""What the gate asks of a plant, in all corners at once, as `current.py` and `display.py` are; and one play."""
+"""The interface between the gate and a module or display in all corners, also the result of one play."""
 
 from __future__ import annotations
 

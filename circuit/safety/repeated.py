@@ -1,4 +1,4 @@
-"""Repeated plays: verdict, and the shortest pause that is safe."""
+"""Repeated plays: their verdict, their shortest safe pause."""
 
 import math
 from bisect import bisect_left

@@ -1,4 +1,4 @@
-"""Simulation of a session: one drive, played as one run, divided into plays where they start, and its worst case.
+"""Simulation of a session: one run, divided into plays, with its worst case.
 
 A session is a given sequence, so it is judged as one play at the gate, and not for repetition; an export covers single
 faults of the hardware.

@@ -1,4 +1,4 @@
-"""Where plays begin, and with them their single faults: at rest, first after no power or a stop, later in any order.
+"""The starts of plays: at rest, first after no power, later in any order.
 
 A later play begins between the warm and the cold bound of all plays after the shortest pause. A first one begins after
 a rest, which is held on a display that was without power, or whose play was stopped at any instant and that gave no

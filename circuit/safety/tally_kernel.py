@@ -1,6 +1,4 @@
-"""Compiled integrals of thermal dose, and the check of runs against rules: the extreme of each rule's quantity in each
-lane, its time, and since when the limit is exceeded.
-"""
+"""Compiled integrals of thermal dose and checks of runs against the rules for many lanes."""
 
 # mypy: disable-error-code="no-untyped-def,misc"
 # numba infers the types here, and its decorators have none.

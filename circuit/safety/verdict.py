@@ -1,4 +1,4 @@
-"""One run against the sourced limits of safety, and in a few numbers: target, extremes, electrical energy, safety.
+"""The verdict on one run: safety limits with a summary of target, extremes, energy.
 
 This is not a medical or ethical clearance, and a hardware cut-off is required.
 """

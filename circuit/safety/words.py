@@ -1,4 +1,4 @@
-"""Verdicts in words: scenarios, checks, cures, single faults and repetition, from their records.
+"""Verdicts in words, from their records.
 
 Nothing is decided here and nothing that decides imports this module: it is loaded when somebody reads.
 """

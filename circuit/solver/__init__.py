@@ -1,1 +1,1 @@
-"""thermicon.circuit.solver: corner points and a rig → drive current, temperatures and heat flow."""
+"""thermicon.circuit.solver: corner points and a rig → drive current → temperatures → heat flow."""

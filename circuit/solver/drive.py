@@ -1,4 +1,4 @@
-"""A drive: the current through a rig's module, held or linear between its rows; its CSV file; and a bridge's duties.
+"""A drive: the current through a rig's module, held or linear between its rows.
 
 At duty D and current Ip a bridge pumps α·T·D·Ip, but its resistance heats with D·Ip², where a steady current of the
 same mean heats with (D·Ip)². A slow cycle also ripples the plate.

@@ -1,4 +1,4 @@
-"""From the temperature that a cue prescribes to the current that produces it, held over each driver period."""
+"""The inverse problem: the current that produces a cue's prescribed temperature, held over each driver period."""
 
 import math
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Compiled sums over what is linear: modes under a display, and a ramp's response that many ramps share.
+"""Compiled sums of modes of the linear circuit.
 
 Skin under a display that is linear between periods is a sum of responses to
 one ramp: a display whose slope changes by s_j K per period at period k_j leads to readings

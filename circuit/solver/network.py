@@ -1,4 +1,4 @@
-"""The circuit as numbers: plates, skin lumps and probes of a rig, ready for stepping, and the balance of its plates.
+"""The circuit as arrays for stepping, with the heat balance of its plates.
 
 State vector: hot plate, cold plate (the display), skin lumps from the surface down, then a passive heat sink of a rig
 that has one, deep node (constant), all in °C.

@@ -1,4 +1,4 @@
-"""Steady states: the state under a constant current, and the current that holds a baseline."""
+"""Steady states: the state under a constant current, or the current that holds a baseline."""
 
 from dataclasses import replace
 from functools import lru_cache

@@ -1,4 +1,4 @@
-"""A trace: the result of one run, row by row, and whether it reached its target."""
+"""A trace: the result of one run, row by row."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Build the docs site: ``python docs/builder`` writes it to build/site/html; no warning is allowed.
+"""The build of the docs site: ``python docs/builder`` writes it to build/site/html without a warning.
 
 ``--no-execute`` leaves out what computes for minutes: outputs of the tutorials, predictions in the gallery,
 pictures of pages.

@@ -1,4 +1,4 @@
-"""Tables and lists of the docs from data files: errors of cue files, limits and uncertainties of the safety gate."""
+"""Tables of the docs from data files: errors of cue files, limits of the safety gate, its uncertainties."""
 
 from __future__ import annotations
 

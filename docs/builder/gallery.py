@@ -1,4 +1,4 @@
-"""The gallery: every shipped set with its picture, its predicted confusions and its cue text."""
+"""The gallery: every shipped set with its picture, predicted confusions, cue text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables of the docs: keys of files with values and defaults, from the schemas that check the files."""
+"""Tables of the keys of files, with values or defaults, from the schemas."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The source paper's figures 3, 4 and 6 as thermicon computes them, and the circuit that it solves, for the site."""
+"""The source paper's figures as thermicon computes them, with the circuit that it solves."""
 
 from __future__ import annotations
 

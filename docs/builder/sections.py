@@ -1,4 +1,4 @@
-"""The sections of the site, from docs/README.md: its headings, what they say, and the pages below them."""
+"""The sections of the site, from the headings of docs/README.md."""
 
 from __future__ import annotations
 

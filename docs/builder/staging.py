@@ -1,4 +1,4 @@
-"""Copies README, docs/ and the tutorials into one source folder for Sphinx, with links that lead inside it."""
+"""The source folder for Sphinx: copies of README, docs/, tutorials, with links that lead inside it."""
 
 from __future__ import annotations
 

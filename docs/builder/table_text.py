@@ -1,4 +1,4 @@
-"""Numbers and tables as Markdown, and units as people read them."""
+"""Numbers, units or tables as Markdown."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The catalogue of errors: what every code means, a file that causes it with the message, and a corrected file."""
+"""The catalogue of error codes: meaning, an example with its message, a corrected example."""
 
 from dataclasses import dataclass
 from functools import cache

@@ -1,4 +1,4 @@
-"""What a paper says of a set: a paragraph for its methods, with what is unverified of its sources."""
+"""The methods paragraph about a set for a paper, with its unverified sources."""
 
 import re
 from collections.abc import Mapping, Sequence

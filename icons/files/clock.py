@@ -1,4 +1,4 @@
-"""Times of rows as loggers write them: clocks and dates as seconds, stamps with too few digits, and times that fall."""
+"""Times of rows as loggers write them, converted to seconds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names of columns as instruments and programs write them: which of ours is meant, and in which unit it is.
+"""Column names of instruments or programs, matched to the project's columns with their units.
 
 A unit stands in brackets, behind a slash, a comma, a space or an underscore: ``Temp (°C)``, ``T_display/degC``.
 """

@@ -1,4 +1,4 @@
-"""A cue set as JSON, for other programs; the schema is ``data/cue.schema.json``."""
+"""A cue set as JSON with the schema ``data/cue.schema.json``."""
 
 import json
 from dataclasses import fields

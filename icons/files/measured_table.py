@@ -1,4 +1,4 @@
-"""What was measured over time, out of a table: times in s and columns in SI units, checked alike for every command."""
+"""Measured columns over time, read from a table in SI units."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files that people hand in, read with a limit, and the icon sets that ship with the package."""
+"""Input files, read with a limit of size, and the icon sets that ship with the package."""
 
 import errno
 import stat

@@ -1,4 +1,4 @@
-"""The one reader of tables: text with a line of names and rows of cells, as numbers or texts by column.
+"""The reader of tables: a line of names above rows of cells.
 
 Commas, semicolons, tabs or spaces separate the cells; where it is not commas, decimal commas are numbers too. What
 stands above the names, lines that begin with #, and the line by which spreadsheets name the separator, are passed over.

@@ -1,4 +1,4 @@
-"""The text of a table in the bytes of a file, in whatever form loggers, spreadsheets and SPICE programs write it."""
+"""The text of a table decoded from the bytes that loggers, spreadsheets or SPICE programs write."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether the numbers of a column can be in the unit of its name, and readings that no sensor could have taken.
+"""Plausibility of a column's readings in the unit of its name.
 
 The whole range of a column decides, and every unit that its numbers fit is named; nothing is converted.
 """

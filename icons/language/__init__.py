@@ -1,1 +1,1 @@
-"""Cue text to icons: grammar, recovery after a mistake, diagnosis in words, assembly."""
+"""From cue text to icons: grammar, recovery after a mistake, diagnosis, assembly."""

@@ -1,4 +1,4 @@
-"""From the tree to a set: the file's order, its one set block, its icons, and whether each of them can be run."""
+"""Assembly of a set from the syntax tree, with the rules about the order of blocks."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

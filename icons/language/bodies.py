@@ -1,4 +1,4 @@
-"""From the tree to statements: the body of one icon or family, in which parameters may stand for numbers."""
+"""Assembly of statements: the body of one icon or family, where parameters may take the place of numbers."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field

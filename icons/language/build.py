@@ -1,4 +1,4 @@
-"""From tokens to values: numbers into SI, texts, parameters; with an error at the place of each that is not valid."""
+"""Conversion of tokens to values in SI units, with an error at the place of each invalid one."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""Say in plain words what is wrong with one statement, from its own pieces and from what the grammar could take."""
+"""Diagnosis of one wrong statement from its tokens in the light of the grammar."""
 
 import re
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Diagnosis of the parentheses of a family: names, lists, ranges and units of its parameters."""
+"""Diagnosis of a family's parentheses: names, lists, ranges, units."""
 
 from ..model.units import UNITS
 from ..model.words import VOCABULARY, nearest_unit

@@ -1,4 +1,4 @@
-"""Diagnosis of numbers: units that are missing, unknown or of the wrong kind, and words where a number belongs."""
+"""Diagnosis of numbers with a missing, unknown or wrong unit."""
 
 import re
 from collections.abc import Container

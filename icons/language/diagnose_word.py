@@ -1,4 +1,4 @@
-"""Diagnosis of the small words: at, over, by, to, for, every, starting; and of what stands behind a whole statement."""
+"""Diagnosis of missing or wrong prepositions (at, over, by, …) and of text after a complete statement."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""One statement that stopped making sense, as the rules of diagnosis see it, and how they say what they found."""
+"""A statement that failed to parse, as the rules of diagnosis receive it."""
 
 from collections.abc import Iterable
 from collections.abc import Set as AbstractSet

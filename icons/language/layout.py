@@ -1,4 +1,4 @@
-"""The formatter: a cue text in canonical layout, one statement per line; comments and numbers are kept."""
+"""The formatter: cue text in canonical layout, one statement per line."""
 
 from collections.abc import Iterable, Iterator
 

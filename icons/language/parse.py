@@ -1,4 +1,4 @@
-"""Cue text in, icon set out: or everything that is wrong with it, each with a corrected line that was tried out."""
+"""The parser: cue text to an icon set or to all its errors, each with a corrected line that was tested."""
 
 from ..model.arguments import checked
 from ..model.errors import MOST_ERRORS, CueError, CueErrors, whole_file

@@ -1,4 +1,4 @@
-"""Run the grammar over a whole file and carry on behind every error, so that all of them are found in one go."""
+"""Error recovery: a parse of the whole file that continues after every error."""
 
 import re
 from collections.abc import Iterator, Sequence

@@ -1,4 +1,4 @@
-"""The text of a cue file and its grammar: bytes checked at the door, lines and columns, text cut into pieces."""
+"""The source text of a cue file with its lines, columns, tokens."""
 
 import re
 from bisect import bisect_right

@@ -1,1 +1,1 @@
-"""Statements, icons, families and sets: what a cue means, its limits, its corner points and its text."""
+"""The meaning of a cue: statements, icons, families, sets, corner points."""

@@ -1,4 +1,4 @@
-"""Arguments of public functions: what each takes follows from its annotation, and what does not fit is named."""
+"""Checks of arguments of public functions, derived from their annotations."""
 
 import builtins
 import sys

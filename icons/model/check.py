@@ -1,4 +1,4 @@
-"""Meaning: follow an icon's statements and find what cannot work, without writing repeats out."""
+"""Semantic checks: an icon's statements followed in order, without writing repeats out."""
 
 import math
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""What icons carry besides statements, and what names and texts may be, and how any text is shown without acting.
+"""Context and metadata of icons; which names and texts are allowed; how untrusted text is made safe to print.
 
 Control characters steer terminals (colours, window titles, a cursor that overwrites a verdict), and marks of writing
 direction make a line read differently from what it is. Names and titles do not take them; messages show "�" instead.

@@ -1,4 +1,4 @@
-"""Corner points: an icon written out without loss, which every simulator and exporter starts from."""
+"""Corner points: an icon written out without loss, the input of every simulator."""
 
 import math
 from collections.abc import Iterator, Sequence

@@ -1,4 +1,4 @@
-"""A family: one icon text with parameters, that stands for as many icons as they have values, made when asked for."""
+"""A family: a parametrised icon that yields one icon for each combination of parameter values."""
 
 import random
 from collections.abc import Iterator, Mapping

@@ -1,4 +1,4 @@
-"""An icon: a name, statements, the context they are meant in and metadata, proven on construction."""
+"""An icon: a name with statements, their context, metadata, all checked on construction."""
 
 import hashlib
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""The icons of one file, families among them: a set that counts its members without making them."""
+"""An icon set: the icons of one file, whose families are counted without being expanded."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass

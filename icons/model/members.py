@@ -1,4 +1,4 @@
-"""Members of a family made one by one, checked exactly as icons that stand alone are, and what all of them reach."""
+"""Members of a family, each checked like an icon, with a summary of all."""
 
 import re
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""What each statement does to the level: where it leads, how long it takes, how far it reaches, its straight pieces."""
+"""Motion of the level under each statement: end, duration, extremes, straight pieces."""
 
 import math
 from collections.abc import Iterator

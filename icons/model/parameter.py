@@ -1,4 +1,4 @@
-"""A parameter of a family: its name, unit and values, listed or counted out; and where in the statements it stands."""
+"""A parameter of a family: name, unit, values, places in the statements."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress

@@ -1,4 +1,4 @@
-"""What an icon is made of: frozen statements in SI floats that prove themselves."""
+"""Statements: the frozen parts of an icon in SI units."""
 
 from dataclasses import dataclass, field
 from numbers import Integral

@@ -1,4 +1,4 @@
-"""Numbers at the door: text to SI floats and back without losing a digit, and what a number in an icon may be."""
+"""Conversion of numbers between text and SI floats without losing a digit."""
 
 import math
 from fractions import Fraction

@@ -1,4 +1,4 @@
-"""The words of the language for messages: what stands where, what is not there yet, what people write instead."""
+"""The language's words as messages use them."""
 
 import tomllib
 from collections.abc import Iterable

@@ -1,1 +1,1 @@
-"""Icons as figures and small pictures; what is drawn is imported for its type alone."""
+"""Figures and small pictures of icons."""

@@ -1,4 +1,4 @@
-"""Plot icons with matplotlib: the prescribed level against time, coloured by direction, or one colour an icon."""
+"""Plots of icons: the prescribed level against time."""
 
 from __future__ import annotations
 

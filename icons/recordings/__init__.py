@@ -1,1 +1,1 @@
-"""A recorded course of temperature to the few corner points of an icon."""
+"""Recorded courses of temperature as icons with few corner points."""

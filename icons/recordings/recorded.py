@@ -1,4 +1,4 @@
-"""A recording of temperature in a CSV file as an icon: readings checked at the door, and corner points through them."""
+"""An icon from a recording of temperature in a CSV file."""
 
 import math
 import re

@@ -1,1 +1,1 @@
-"""Cue text in an editor: errors, completion, history, and edits that keep what they do not touch as it is written."""
+"""Cue text in an editor: errors, completion, history, minimal edits."""

@@ -1,4 +1,4 @@
-"""Cue text as an editor holds it: read at every keystroke, with its errors where the editor shows them."""
+"""Cue text as an editor holds it, parsed at every keystroke, with its errors in the editor's form."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers where they are written: found in the text of a statement, put anew in its unit; and edits of whole icons."""
+"""Numbers in the text of a statement, rewritten in place in their own unit."""
 
 from __future__ import annotations
 

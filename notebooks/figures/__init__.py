@@ -1,1 +1,1 @@
-"""Figures that several commands and views share."""
+"""Figures that several commands or views share."""

@@ -1,4 +1,4 @@
-"""Two runs in one figure: curves of A and B and what B has more; an icon as designed and as its device delivers it."""
+"""Two runs in one figure: both curves with their difference."""
 
 from __future__ import annotations
 

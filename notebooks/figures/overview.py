@@ -1,4 +1,4 @@
-"""The overview of one icon from drive to percept on one clock, and the still picture of the workbench's design view."""
+"""The overview of one icon from drive to percept on one clock."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The figure of a session: temperatures with every play marked, and what each play changes."""
+"""The figure of a session: temperatures with every play marked."""
 
 from __future__ import annotations
 

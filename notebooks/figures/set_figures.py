@@ -1,4 +1,4 @@
-"""Figures of a set: distances and confusions side by side, and predicted answers beside observed ones."""
+"""Figures of a set: distances beside confusions, predicted beside observed answers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What all figures share: colours, the width in print, how axes look, keys beside the panels, limits of the skin."""
+"""The style of all figures: colours, widths, axes, keys beside the panels."""
 
 from __future__ import annotations
 

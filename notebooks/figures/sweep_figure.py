@@ -1,4 +1,4 @@
-"""The figure of a sweep: a panel a quantity and a line an icon over one key of the rig."""
+"""The figure of a sweep: one panel per quantity with one line per icon."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Files that are written whole or not at all, export folders, traces read back."""
+"""Files written whole or not at all, export folders, traces read back."""

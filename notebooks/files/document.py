@@ -1,4 +1,4 @@
-"""A cue text that is edited: its file, what was saved there, undo and redo, versions, and what is unsaved of it."""
+"""A cue text under edit: its file, its saved state, undo, redo, versions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What people lose by the device of an export: the comparison that command line, workbench and studies hand to it."""
+"""The comparison of delivered with designed icons as people feel them, passed to every export."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names of files that a command or a page will write: looked at before long work starts."""
+"""Names of output files, checked before long work starts."""
 
 import os
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Curves over time, out of a trace or the file of a trace or log; two of them on common times, and how far apart."""
+"""Curves over time from a trace or its file, two of them compared on common times."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Versions of a text in one hidden file beside it: those that were kept by hand, and what editors have not saved."""
+"""Versions of a text in one hidden file beside it: kept by hand, or not yet saved."""
 
 import os
 import secrets

@@ -1,4 +1,4 @@
-"""A study from its file to a plan: what it names, derived pauses, orders, verdicts, and the steps of a threshold."""
+"""The plan of a study from its file: pauses, orders, verdicts, threshold levels."""
 
 from __future__ import annotations
 

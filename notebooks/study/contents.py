@@ -1,4 +1,4 @@
-"""The files of a study's folder: drives, conditions, script, planned events, verdicts, and how to use them."""
+"""The files of a study's folder: drives, conditions, script, planned events, verdicts, instructions."""
 
 from __future__ import annotations
 

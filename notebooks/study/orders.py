@@ -1,4 +1,4 @@
-"""Orders of play: Williams designs, balanced sequences, and random ones; all from one seed.
+"""Orders of play from one seed: Williams designs, balanced sequences, random ones.
 
 Python's own generator is used, whose sequences are the same in every version; those of numpy are not promised to be.
 """

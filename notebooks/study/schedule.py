@@ -1,4 +1,4 @@
-"""Every trial of every participant, in order; when each is planned; and the tables of both as BIDS writes them.
+"""The schedule of a study: every trial with its planned time, as tables in the form of BIDS.
 
 Limits on their number are checked before anything is simulated.
 """

@@ -1,4 +1,4 @@
-"""A study file: its keys, each with its bounds, read and checked as a whole; what they mean is in the reference.
+"""The schema of a study file: its keys with their bounds.
 
 A study is identified by the hash of everything that decides it.
 """

@@ -1,4 +1,4 @@
-"""A corner dragged: the one or two numbers of its statement that put it there; the rest of the text is untouched."""
+"""A dragged corner: the one or two numbers of its statement that change."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A scene as one frame for the canvas: plain data that JSON takes, and one float32 array for every curve.
+"""Frames for the canvas: a scene as plain data with one float32 array for every curve.
 
 Colours are named by role only; which they are is for the canvas and its themes to say.
 """

@@ -1,4 +1,4 @@
-"""The draggable corners of an icon, and the number in the text that each of them depends on."""
+"""The draggable corners of an icon, each with the number in the text on which it depends."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is marked beside the curves of a run: events, and stretches where the target is missed."""
+"""Marks beside the curves of a run: events, stretches where the target is missed."""
 
 from __future__ import annotations
 

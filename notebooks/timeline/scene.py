@@ -1,4 +1,4 @@
-"""A cue text on a rig as one scene: all that the design view shows, as data; whatever goes wrong is part of it."""
+"""The scene of the design view: a cue text on a rig as data, with every error."""
 
 from __future__ import annotations
 

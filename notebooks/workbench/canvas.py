@@ -1,4 +1,4 @@
-"""The canvas of the workbench: one anywidget that draws frames in the browser and hands back what people do there.
+"""The canvas of the workbench: one anywidget that draws frames in the browser.
 
 The module in ``canvas_parts/`` is plain JavaScript without a build step: its parts are joined here in order, so they
 import nothing; CodeMirror, bundled in ``codemirror/``, is carried in packed form. A frame goes out as one message with

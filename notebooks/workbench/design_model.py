@@ -1,4 +1,4 @@
-"""The design view without its widgets: every message of the page becomes one frame, whatever goes wrong in between."""
+"""The design view without its widgets: one frame in answer to every message of the page."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The design view as widgets: the canvas with text and time line, and above it the knobs."""
+"""The design view as widgets: canvas with text and time line below the knobs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The bar above the tabs: file, icons, rig, undo, and the messages about them."""
+"""The bar above the tabs: file, icons, rig, undo, messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The export view: what a device delivers, whether it is safe, and the drive files."""
+"""The export view: delivered drives, verdicts, drive files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The usual unknowns as knobs: what is rarely known of contact, skin and driver, each with its range."""
+"""Knobs for the usual unknowns of contact, skin or driver, each with its range."""
 
 import math
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""A tab whose content follows the design: computed in the background while it is shown, one job at a time.
+"""A tab that follows the design by computing in the background while it is shown.
 
 The newest job wins, and results are shown on the kernel's event loop.
 """

@@ -1,4 +1,4 @@
-"""A set ranked for the set view, quickly and then well, with everything of it that is drawn, as data."""
+"""A set ranked for the set view, first quickly, then well."""
 
 from __future__ import annotations
 

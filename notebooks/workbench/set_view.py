@@ -1,4 +1,4 @@
-"""The set view: confusions, the selected pair with its cheapest edit, and the perceptual map."""
+"""The set view: confusions, the selected pair with its cheapest edit, the perceptual map."""
 
 from __future__ import annotations
 

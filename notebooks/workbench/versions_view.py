@@ -1,4 +1,4 @@
-"""The versions view: texts that were kept, each with its difference from the editor's."""
+"""The versions view: kept texts, each with its difference from the editor's."""
 
 from __future__ import annotations
 

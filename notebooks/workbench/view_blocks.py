@@ -1,4 +1,4 @@
-"""What the set view and the export view say, as HTML: blocks of the reports, in the style of the workbench."""
+"""Report blocks as HTML in the style of the workbench."""
 
 from __future__ import annotations
 

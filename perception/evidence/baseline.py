@@ -1,4 +1,4 @@
-"""Which of the model and the baseline, skin temperature alone, is nearer to what was published."""
+"""The comparison of the model with the baseline, skin temperature alone, against published results."""
 
 import math
 

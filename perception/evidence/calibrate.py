@@ -1,4 +1,4 @@
-"""Write the observer's parameter file: inferred constants, records taken over, and the noise of memory.
+"""The writer of the observer's parameter file: inferred constants, records taken over, noise of memory.
 
 Constants are those of the maximum, since no draw is near the middle of them all; intervals cover 95 % of the draws.
 """

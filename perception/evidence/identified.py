@@ -1,4 +1,4 @@
-"""Icons named from memory, for every variant of the observer: confusions, and their dependence on parameters.
+"""Identification from memory by every variant of the observer, with the derivatives of its statistics.
 
 Six icons, and waves that differ in shape alone, shipped as `wave-confusions`, since published ones were not available
 in numbers. The same chain as `rank`, on the same people.

@@ -1,4 +1,4 @@
-"""Log posterior of the constants, rows and priors as residuals, and its maximum with the normal approximation there.
+"""Log posterior of the constants, with its maximum, where a normal approximates it.
 
 The maximum takes seconds where a sampler needs an hour. Gauss–Newton on the residuals; the Laplace approximation of the
 evidence is

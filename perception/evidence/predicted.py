@@ -1,4 +1,4 @@
-"""One predicted number with its uncertainty: parameters that nobody has measured, and people.
+"""One predicted number with its uncertainty from unmeasured parameters and from people.
 
 Intervals come from laboratories that the evidence leaves possible, as `rank` draws them.
 """

@@ -1,4 +1,4 @@
-"""Short pulses: published cues of which only a summary is known to us, and invented ones that stand for them.
+"""Short pulses: published cues known only by a summary, with invented substitutes.
 
 Of 52 sequences of one to three pulses the best 22 and 16 are predicted, as many as were published, and 22 by chance.
 """

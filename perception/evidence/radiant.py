@@ -1,4 +1,4 @@
-"""Whole-body warmth: bare skin under radiant heat, for published thresholds in W/m² that no display was used for.
+"""Whole-body warmth: bare skin under radiant heat, for published thresholds in W/m².
 
 The skin is the column of a rig without its display; the flux is absorbed at the surface, from t = 0 on.
 """

@@ -1,4 +1,4 @@
-"""The shipped results of the inference: CSV tables, so that a spreadsheet opens them.
+"""The shipped results of the inference as CSV tables.
 
 A test checks that they belong to the shipped evidence and priors; the ablation says by which version it was made.
 """

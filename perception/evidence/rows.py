@@ -1,4 +1,4 @@
-"""Published statistics as data, and the rows of the likelihood: one published number each, with its error.
+"""Published statistics as data, one number with its error in each row of the likelihood.
 
 `data/evidence.csv` has one row a statistic and `data/evidence.toml` one table an experiment; no trial data.
 """

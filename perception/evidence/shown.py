@@ -1,4 +1,4 @@
-"""Every published experiment, run on every variant of the observer: what a validation report is made of."""
+"""Every published experiment run on every variant of the observer, for the validation report."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

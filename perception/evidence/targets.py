@@ -1,4 +1,4 @@
-"""What the observer has to explain: targets and their rows, read from `data/targets.toml`.
+"""Targets of the validation, read from `data/targets.toml`.
 
 Published numbers themselves come from the table of thresholds alone.
 """

@@ -1,4 +1,4 @@
-"""A validation report as plain data, for `validation.json`: what does not exist is None, never NaN."""
+"""A validation report as plain data for `validation.json`, with None for missing values."""
 
 import math
 from dataclasses import asdict

@@ -1,4 +1,4 @@
-"""How a prediction stands to a published number: holds, or misses and by how much."""
+"""The verdict on a prediction: it holds, or misses a published number by so much."""
 
 import math
 from dataclasses import dataclass

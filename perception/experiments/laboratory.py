@@ -1,4 +1,4 @@
-"""One laboratory's view of a set of constants: drives of its stimuli, sensitivities of its people, answers.
+"""A laboratory with one set of constants: drives of its stimuli, sensitivities of its people, answers.
 
 Its people and trials have the same quasi-random numbers for every set of constants: a change of a constant then changes
 a prediction smoothly, which a search for a maximum needs.

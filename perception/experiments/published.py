@@ -1,4 +1,4 @@
-"""Every conditioning experiment, played and asked as it was: predictions of its statistics by the keys of `rows`.
+"""Simulations of the conditioning experiments, with predictions of their statistics by the keys of `rows`.
 
 Numbers on a log scale are logarithms.
 """

@@ -1,4 +1,4 @@
-"""Tasks that a laboratory gives its people: a ramp is played, and they press, choose, report or rate.
+"""Tasks in a laboratory: press, choose, report or rate while a ramp is played.
 
 Rows of the evidence, measurements of a pilot and `measure` are all asked here.
 """

@@ -1,1 +1,1 @@
-"""Distance between percepts, confusion, information, and the task in which icons are identified."""
+"""Identification of icons: distance between percepts, confusion, information."""

@@ -1,4 +1,4 @@
-"""Pairwise d′ → how often each icon is called by each name.
+"""Confusions from pairwise d′: how often each icon is called by each name.
 
 Icons are points whose distances are the pairwise d′ (classical scaling, negative axes dropped).
 A presented icon is felt as its point plus unit noise on every axis, and named after the nearest

@@ -1,4 +1,4 @@
-"""Perception of the designed and of the delivered icons: detection of each, and d′ to every other icon of the set.
+"""Perception of the designed against the delivered icons: detection, d′ to the other icons of the set.
 
 What the device changes for the nominal person is added to every person's temperatures, in proportion to the icon there.
 That is exact for what scales with the icon, and wrong by about a tenth otherwise, since skins differ in lag.

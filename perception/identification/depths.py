@@ -1,4 +1,4 @@
-"""Receptors at the depths of many observers: a few depths are simulated, and what lies between is interpolated."""
+"""Receptor temperatures for many observers, interpolated between a few simulated depths."""
 
 from __future__ import annotations
 

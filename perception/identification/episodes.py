@@ -1,4 +1,4 @@
-"""What is remembered of icons as episodes: stretches of one quality, in their order, each with its features.
+"""Remembered episodes of icons: stretches of one quality, in their order, each with its features.
 
 Two forms: `episodes` compares intensities in logarithms and places icons symmetrically; `naming` compares ratings.
 """

@@ -1,4 +1,4 @@
-"""What a new laboratory will find: a prediction repeated with draws from the posterior, people and laboratory included.
+"""Intervals for a new laboratory: a prediction repeated with draws from the posterior.
 
 Each draw invites a sample of the same few people, and adds its difference from the nominal observer with these.
 """

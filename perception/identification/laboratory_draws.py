@@ -1,4 +1,4 @@
-"""A set as every draw of the posterior predicts it: draws with their own people, laboratory and memory.
+"""The prediction of each posterior draw for a set, with its own people, laboratory, memory.
 
 A draw brings its own spread between people, an offset of the laboratory, and memory: its own, or, since no published
 posterior knows of it, drawn from its intervals.

@@ -1,4 +1,4 @@
-"""Many people and many icons: receptor temperatures → responses → pairwise d′ → confusions."""
+"""The chain for many people and many icons: receptor temperatures → responses → pairwise d′ → confusions."""
 
 from __future__ import annotations
 

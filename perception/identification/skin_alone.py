@@ -1,4 +1,4 @@
-"""The baseline that the model has to beat: a person who goes by the temperature of the skin and nothing else.
+"""The baseline: an observer who uses skin temperature only.
 
 A change is noticed at one size; icons differ by the root mean square of the difference of their skin temperatures
 over one noise in K, which the rate task sets, exactly as that of memory (`evidence.task`).

@@ -1,4 +1,4 @@
-"""The identification task: whether the icon before is still felt; and the noise of memory, from a published task.
+"""The identification task, with the noise of memory fitted to a published one.
 
 People distinguish two rates that differ by a fixed fraction, whatever rate and span (Bergmann Tiest & Kappers 2009).
 """

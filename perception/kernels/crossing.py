@@ -1,4 +1,4 @@
-"""Compiled crossing: the log probability that noisy sensation has not passed a criterion yet, and what is read from it.
+"""Compiled crossing: the log probability that noisy sensation has stayed below a criterion until each time.
 
 Noise of unit SD and autocorrelation e^(−t²/2τ²) is added to a sensation ψ that rises at the rate r. The criterion c
 that has not been passed yet is passed, per unit of time, at Rice's rate over the probability of being below it:

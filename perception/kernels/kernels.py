@@ -1,4 +1,4 @@
-"""Compiled loops of the chain, one recursion each; imported only when something is computed.
+"""Compiled loops of the chain, one recursion each, imported only for a computation.
 
 Every kernel runs over rows independently, so that splitting rows over threads changes no bit.
 

@@ -1,4 +1,4 @@
-"""Work spread over cores, whose number does not change it, and its steps counted."""
+"""Parallel work on a number of cores that does not change its result."""
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor

@@ -1,1 +1,1 @@
-"""The observer: constants with sources, variants of the model, and people drawn around it."""
+"""The observer: constants with sources, variants of the model, distributions of people."""

@@ -1,4 +1,4 @@
-"""Names that every stage shares: the two channels, the norms of memory, and what an observer's receptors go by.
+"""Names shared by all stages: the two channels, the forms of memory, the receptor inputs.
 
 Two variants: temperature at receptor depth, or heat flow there (the hypothesis of Shani and Lineykin 2021).
 """

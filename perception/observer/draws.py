@@ -1,4 +1,4 @@
-"""Draws from the posterior of all constants: what the evidence leaves open, one consistent set of constants a draw.
+"""Draws from the posterior of all constants: one consistent set of constants each.
 
 Where the evidence does not separate two constants, they trade off from draw to draw. Memory stays that of the shipped
 observer, except in draws of one laboratory, whose answers say something of it.

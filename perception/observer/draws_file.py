@@ -1,4 +1,4 @@
-"""The table of posterior draws as a file: header lines that say what it was made from, then one row a draw.
+"""The file of posterior draws: header lines on their origin, one row per draw.
 
 It is written by `python -m thermicon.perception.evidence`. Reading refuses a table of other evidence or another form.
 """

@@ -1,4 +1,4 @@
-"""What predictions are made with: the nominal observer, how people differ, and the posterior that both come from.
+"""The observer model: nominal observer, differences between people, posterior.
 
 Another than the shipped one is a table of posterior draws (.csv), or the records of one observer (.toml), which has no
 draws and so no intervals for a new laboratory.

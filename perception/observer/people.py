@@ -1,4 +1,4 @@
-"""Virtual people: what differs between persons, each number from a record or said to be assumed."""
+"""Virtual people drawn from the distributions of the constants that differ between persons."""
 
 from __future__ import annotations
 

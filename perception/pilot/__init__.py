@@ -1,1 +1,1 @@
-"""A laboratory's own participants sharpen the prediction: what they answered, what it changes, what to measure next."""
+"""A pilot experiment: observed answers, the conditioned prediction, the plan of the next measurement."""

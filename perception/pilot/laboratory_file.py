@@ -1,4 +1,4 @@
-"""A conditioned laboratory as files: a table of draws like the shipped one, and the observer in the middle of them.
+"""The files of a conditioned laboratory: a table of draws, the observer in their middle.
 
 `LAB.csv` has the form of `posterior.csv`, with further columns for memory; the offset of the laboratory is part of its
 thresholds. `LAB.toml` is its first draw, which is a laboratory of the sample: the medians belong to none, and may

@@ -1,4 +1,4 @@
-r"""How likely the answers of an experiment are in a laboratory, and the weights that follow.
+r"""The likelihood of answers in a laboratory, with the weights that follow.
 
 A participant j of laboratory ℓ is one of its people, nobody knows which. With S virtual people whose confusions are
 C, and N_j[a, b] answers b to icon a,

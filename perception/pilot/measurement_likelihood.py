@@ -1,4 +1,4 @@
-r"""How likely measurements are in a laboratory.
+r"""The likelihood of measurements in a laboratory.
 
 Logs of the values of participant j are normal, and participants share what the model misses and the scale of ratings:
 

@@ -1,4 +1,4 @@
-"""Thresholds, reaction times and ratings that a laboratory measured, and the door for them.
+"""The reader of measured thresholds, reaction times and ratings.
 
 Each value has a condition that can be simulated. The door reads a CSV file of values, or says what is wrong with it.
 """

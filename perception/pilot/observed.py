@@ -1,4 +1,4 @@
-"""Condition the prediction on what a laboratory's own participants answered, or on what was measured of them."""
+"""The prediction conditioned on the answers or measurements of a laboratory's own participants."""
 
 from __future__ import annotations
 

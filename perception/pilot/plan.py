@@ -1,4 +1,4 @@
-"""Plan an experiment: how many participants and trials it needs, by simulating all of it.
+"""The plan of an experiment: the participants and trials that it needs by simulation.
 
 Each takes place in another laboratory that the evidence allows. The mean over its participants is reported with
 Student's 95 % interval; two sets are compared within participants by the paired t test.

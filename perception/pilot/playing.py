@@ -1,4 +1,4 @@
-"""How people of many laboratories name the icons of a set: confusions of every person of every laboratory."""
+"""Naming of a set's icons by the people of many laboratories."""
 
 from __future__ import annotations
 

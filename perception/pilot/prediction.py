@@ -1,4 +1,4 @@
-"""What samples of laboratories say: scores of sets and constants before and after data, and how the data fit.
+"""Predictions by samples of laboratories: scores and constants before and after data.
 
 For the fit, experiments like the observed one are simulated, each in another laboratory. The posterior predictive p is
 the share of them that lie as far from the prediction; it is conservative where the same data have conditioned it. Of

@@ -1,4 +1,4 @@
-"""A sealed prediction, the JSON of `rank`, opened: its log score on answers, beside guessing, skin alone and its best.
+"""A sealed prediction: the log score of a `rank` file on later answers, beside guessing and skin alone.
 
 The best that its own matrix allows is the score that it expects of itself if it is the truth.
 """

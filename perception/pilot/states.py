@@ -1,4 +1,4 @@
-"""Laboratories that the evidence allows: constants, memory, an offset of the laboratory, and the people in it.
+"""Samples of laboratories that the evidence allows: constants, memory, an offset, people.
 
 All but the seed of the people are kept in coordinates in which the prior is standard normal, so that they can be moved
 without leaving it: constants on the scales of their priors, with the mean and covariance of the draws.

@@ -1,4 +1,4 @@
-"""Answers of an experiment in which icons were named, and their scores: per cent correct and bits.
+"""Answers of an identification experiment, with their scores: per cent correct, bits.
 
 Bits are the plug-in estimate, biased upwards by about (cells − rows − columns + 1)/(2·trials·ln 2) with counts of what
 was used (Miller 1955), and less that bias. Answers that are possible but did not occur are not counted. A few

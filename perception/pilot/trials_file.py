@@ -1,4 +1,4 @@
-"""The door for answers: a CSV file of trials, or what is wrong with it, where, and what helps."""
+"""The reader of answers in a CSV file of trials."""
 
 import hashlib
 import re

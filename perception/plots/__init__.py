@@ -1,1 +1,1 @@
-"""Figures of percepts, confusion, distance and sensitivity; what is drawn is known by its type only."""
+"""Figures of percepts, confusion, distance, sensitivity."""

@@ -1,4 +1,4 @@
-"""Heat maps of a set: distances and answers, similar icons adjacent, in one hue, so that grey keeps their order."""
+"""Heat maps of a set's distances or answers: similar icons adjacent, one hue in the order of grey."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The picture of a perceptual map: icons with names that do not cover one another, and ellipses of people."""
+"""The picture of a perceptual map: icons with separate names, ellipses of people."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a ranking depends on most, read from the people and draws that it has made already: nothing is simulated again.
+"""The constants on which a ranking depends most, found from its own people and draws without simulation.
 
 Contact and outermost layer differ from person to person, so that a regression of the proportion correct on people says
 what another contact would do to all of them. The area of contact acts on thresholds alone in the model of perception

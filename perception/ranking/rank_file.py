@@ -1,4 +1,4 @@
-"""A ranking as the plain data of `rank --json`: what does not exist is None, never NaN.
+"""A ranking as the plain data of `rank --json`, with None for missing values.
 
 So is what is asked of a ranking only afterwards: edits, a goal, a choice.
 """

@@ -1,4 +1,4 @@
-"""The result of `rank`: icons, pairs and confusion matrix, with JSON, a table and a figure."""
+"""The result of `rank`: icons, pairs, confusion matrix."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rules of thumb, scored on an icon, a pair or a rig, each with its margin and its source.
+"""Rules of thumb, each scored on an icon, a pair or a rig with its margin.
 
 The thresholds are data (`data/rules.toml`). Rules from the literature and rules of this project
 are distinguished by their source; none of them feeds the model. A rule whose value only the model

@@ -1,4 +1,4 @@
-"""Scores of the parts of a set, of one icon and of one pair, and where rules and model judge them differently.
+"""Scores of the icons and pairs of a set, with disagreements between rules and model.
 
 The score by rules is the share of rules passed, all with the same weight. Nothing in it comes from the model.
 """

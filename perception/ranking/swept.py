@@ -1,4 +1,4 @@
-"""What people make of a set under changed conditions: the perceptual rows of a sweep over rig, site and age."""
+"""Perceptual rows of a sweep over a key of the rig, the site or the age."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Edits of a pair that separate it for the nominal person: how they are made, screened and bisected.
+"""Candidate edits of a pair: generation, screening by the nominal person, bisection.
 
 An edit changes one of the numbers that stand in an icon's statements, or repeats all of them.
 """

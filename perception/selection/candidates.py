@@ -1,4 +1,4 @@
-"""Members of families as shares between 0 and 1 of their parameters, which a search moves, and what is found as icons.
+"""Members of families as a search varies them: parameters as shares between 0 and 1.
 
 Found icons have names that say their numbers, no idle repeat, and tags that say where they come from.
 """

@@ -1,4 +1,4 @@
-"""The frontier of a pool: how well the best few icons of it are distinguished, by how many they are.
+"""The frontier of a pool: identification of its best subset by the number of icons.
 
 For each number of icons it is the choice of `choose`, judged by people who know only these icons. What 95 % of people
 reach depends, as in a goal, on people and on the uncertainty of the model.

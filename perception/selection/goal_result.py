@@ -1,4 +1,4 @@
-"""Whether a set meets a goal, by how much, and what is in the way.
+"""The result of a goal: met or missed, the margin, the obstacles.
 
 A part without people is about their mean. One for a share of people is about people and uncertainty of the model
 together: the value that this share of (draw, person) pairs reaches, a person being one of a new laboratory.

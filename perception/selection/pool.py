@@ -1,4 +1,4 @@
-"""A pool: icons that were simulated once on a rig, what a nominal person feels, and what speaks against each."""
+"""A pool: icons simulated once on a rig, with the nominal person's percepts and reasons against each icon."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The climb of a search: pools of icons about the best set so far, out of each of which the best set is taken."""
+"""The climb of a search: repeated pools of icons about the best set so far."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who is named what in every subset of a pool, and the best subset: all of them are looked at, or seeded climbs.
+"""Identification in the subsets of a pool, with a search for the best, exhaustive or by seeded climbs.
 
 The same persons, points and noise serve all subsets. A presented icon is felt as its point plus noise and named after
 the nearest point of the subset, as in `confuse`, but the points stay those of the whole pool.

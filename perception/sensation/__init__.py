@@ -1,1 +1,1 @@
-"""Receptor temperature to sensation, detection and percept."""
+"""Receptor temperature → sensation → detection → percept."""

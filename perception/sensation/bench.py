@@ -1,4 +1,4 @@
-"""A bench to run experiments on: a rig at rest, and stimuli played at its skin or display, through the circuit."""
+"""A bench for experiments: a rig at rest, with stimuli played at its skin or display through the circuit."""
 
 from __future__ import annotations
 

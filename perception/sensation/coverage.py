@@ -1,4 +1,4 @@
-"""Where data end: one sentence for every way in which an icon lies outside the data (`data/coverage.toml`)."""
+"""Warnings for icons outside the published data (`data/coverage.toml`)."""
 
 from __future__ import annotations
 

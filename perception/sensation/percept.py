@@ -1,4 +1,4 @@
-"""What a cue feels like: two traces of sensation, when and where it was first felt, and when it peaked.
+"""The percept of a cue: two traces of sensation, its onset, its peak.
 
 The receptor clock starts with the cue; the percept clock is later by conduction; the response clock by decision too.
 """

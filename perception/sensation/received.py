@@ -1,4 +1,4 @@
-"""What the receptors of an observer go through in a trace: the skin under its display, at this observer's depths."""
+"""The input of an observer's receptors in a trace: skin under the display, at this observer's depths."""
 
 from __future__ import annotations
 

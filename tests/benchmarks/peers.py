@@ -1,4 +1,4 @@
-"""The same circuit by other programs: ngspice, one process for a cue or one for many, and solve_ivp of scipy."""
+"""The same circuit in other programs: ngspice with one process per cue or for many, solve_ivp of scipy."""
 
 import subprocess
 import time

@@ -1,4 +1,4 @@
-"""Speed of the circuit beside ngspice and scipy simulating the same thing, in one run; ratios are what to quote.
+"""Speed of the circuit as a ratio to ngspice or scipy on the same simulation.
 
 Run with `pytest -m benchmark tests/benchmarks -s`. Each ratio comes with the error of both against a tight reference.
 """

@@ -1,4 +1,4 @@
-"""Commands as they are typed, the start of Python included, and many cues streamed through one rig.
+"""Speed of whole commands, and of many cues streamed through one rig.
 
 Run with `pytest -n 0 -m benchmark tests/benchmarks/test_command_speed.py -s` on a quiet machine. Elapsed time is what a
 user waits for; processor time says how much of it other programs took.

@@ -1,4 +1,4 @@
-"""Speed of families, compared with building their icons one by one, and of reading and laying out text.
+"""Speed of families beside icons built one by one, and of reading and laying out text.
 
 Run with `pytest -m benchmark tests/benchmarks/test_family_speed.py -s`.
 """

@@ -1,4 +1,4 @@
-"""A real browser and JupyterLab on the shipped notebooks; each test gets a page of 1280 x 800."""
+"""A real browser with JupyterLab on the shipped notebooks, one page of 1280 x 800 per test."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Driving JupyterLab in a real browser: servers of our own, and what a person does with a notebook."""
+"""Control of JupyterLab in a real browser: its servers, a person's actions in a notebook."""
 
 import json
 import os

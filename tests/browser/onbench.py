@@ -1,4 +1,4 @@
-"""What a person does with the workbench in a browser."""
+"""A person's actions on the workbench in a browser."""
 
 from playwright.sync_api import Locator, Page, expect
 

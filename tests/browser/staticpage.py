@@ -1,4 +1,4 @@
-"""The canvas module in a static page: a model that sends nowhere and answers as the test says, no Jupyter."""
+"""The canvas module in a static page without Jupyter, with a model that answers as the test says."""
 
 import base64
 from typing import Any

@@ -1,4 +1,4 @@
-"""What axe, an independent checker, finds in the views of the workbench and in a report: nothing serious."""
+"""Accessibility of the workbench views and of a report, by axe."""
 
 import json
 from pathlib import Path

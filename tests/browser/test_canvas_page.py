@@ -1,4 +1,4 @@
-"""The design view of the canvas module alone: a static page, and frames as the kernel would send them."""
+"""The design view of the canvas module in a static page with frames like the kernel's."""
 
 import pytest
 

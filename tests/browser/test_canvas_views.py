@@ -1,4 +1,4 @@
-"""The canvas module alone, in a static page: heat maps, themes, several views, screen readers, unsaved text."""
+"""Views of the canvas module in a static page: heat maps, themes, screen readers, unsaved text."""
 
 from typing import Any
 

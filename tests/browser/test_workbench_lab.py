@@ -1,4 +1,4 @@
-"""The workbench in JupyterLab: text and curve, set, export, going on after an interruption; how fast a drag is."""
+"""The workbench in JupyterLab: text, curve, set, export, interruption, speed of a drag."""
 
 import re
 import time

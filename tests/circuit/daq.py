@@ -1,4 +1,4 @@
-"""A stand-in for nidaqmx that remembers what is put out, and takes as long as the samples do by a given clock."""
+"""A substitute for nidaqmx that records its output at the pace of a given clock."""
 
 from __future__ import annotations
 

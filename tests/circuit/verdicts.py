@@ -1,4 +1,4 @@
-"""A made-up verdict, for tests of what is written after a gate has passed a drive."""
+"""A made-up verdict for tests of the output after the gate."""
 
 from types import SimpleNamespace
 

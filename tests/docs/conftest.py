@@ -1,4 +1,4 @@
-"""The pictures, studies and tables of the pages are made beside them and are not installed."""
+"""The path to the pictures, studies or tables that stand beside the pages without being installed."""
 
 import sys
 from pathlib import Path

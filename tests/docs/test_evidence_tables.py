@@ -1,4 +1,4 @@
-"""Tables of the inference for the pages of docs/: every row of the data files, and numbers a person can read."""
+"""Tables of the inference in docs/: every row of the data files, in readable numbers."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""A probe on insulated skin against a finer field in depth and radius, assembled and stepped apart from the solver."""
+"""A probe on insulated skin against a finer field in depth and radius from an independent solver."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Pictures of mechanisms and of the inference: what is drawn is what was computed, and nothing covers anything."""
+"""Pictures of mechanisms or of the inference: computed curves, legible labels."""
 
 from dataclasses import replace
 

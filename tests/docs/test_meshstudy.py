@@ -1,4 +1,4 @@
-"""The mesh: what the shipped one is good for, and what fixed elements do at onset."""
+"""The mesh study: accuracy of the shipped mesh, errors of fixed elements at onset."""
 
 from functools import cache
 

@@ -1,4 +1,4 @@
-"""The docs site: what it is built from, what the program adds, and that it builds without a warning."""
+"""The docs site: its sources, its generated parts, a build without warnings."""
 
 import re
 import shlex

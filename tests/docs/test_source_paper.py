@@ -1,4 +1,4 @@
-"""The source paper beside ours: what it prints is in a table of records, ours is computed; its notebook runs."""
+"""The source paper's records beside computed values, with its notebook."""
 
 from pathlib import Path
 

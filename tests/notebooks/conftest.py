@@ -1,4 +1,4 @@
-"""The command line in this process (quick) and in one of its own (true)."""
+"""The command line in this process (quick) or in one of its own (true)."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""What reads each kind of input, with sound texts of it: for tests of line ends and of damage."""
+"""The readers of all kinds of input with sound texts, for tests of line ends or damage."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The tutorials: thin, without outputs, every cell runs, pictures are there, and a saved copy stays small."""
+"""The tutorials: thin, without outputs, executable, with small saved copies."""
 
 import os
 import re

@@ -1,4 +1,4 @@
-"""Answers of one person to a course of sensation, written out: no tables, no compiled loops, early false alarms too."""
+"""Answers of one person to a course of sensation, written out without tables or compiled loops."""
 
 import numpy as np
 from scipy.stats import norm

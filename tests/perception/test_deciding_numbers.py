@@ -1,4 +1,4 @@
-"""Numbers that decide what is said: each is asked from both sides, or by its formula."""
+"""Deciding numbers, each tested from both sides or by its formula."""
 
 import math
 from statistics import NormalDist

@@ -1,4 +1,4 @@
-"""Pictures of what a mechanism does to a cue; each returns its axes and never shows a window."""
+"""Pictures of the effect of each mechanism on a cue."""
 
 from __future__ import annotations
 

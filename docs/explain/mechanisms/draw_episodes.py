@@ -1,4 +1,4 @@
-"""Pictures of remembered episodes: sensation over time, and the stretches of it that are remembered."""
+"""Pictures of remembered episodes below the sensation over time."""
 
 from __future__ import annotations
 

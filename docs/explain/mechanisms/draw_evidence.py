@@ -1,4 +1,4 @@
-"""Pictures of the inference: what each mechanism is worth, predictions of what was left out, constants and priors."""
+"""Pictures of the inference: worth of each mechanism, left-out predictions, constants, priors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The pictures that README.md and docs/ show: drawn by ``python tests/test_readme.py``."""
+"""The pictures of README.md and docs/, drawn by ``python tests/test_readme.py``."""
 
 from __future__ import annotations
 

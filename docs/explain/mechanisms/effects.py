@@ -1,4 +1,4 @@
-"""What each mechanism does to a cue: the same stimulus with it and without it, as curves to draw.
+"""The effect of each mechanism on a cue: the same stimulus with or without it, as curves.
 
 Skin is that of the inference under its own thermode, receptors and sensation are the shipped observer's.
 """

@@ -1,4 +1,4 @@
-"""When an icon is felt, by stages: skin and receptor, nerve, cord to brain, and decision."""
+"""Stages of the onset of an icon: skin, receptor, nerve, cord to brain, decision."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Temperature at any depth while a cue plays, and the depth that a probe resembles."""
+"""Temperature at any depth while a cue plays, with the depth that a probe resembles."""
 
 from __future__ import annotations
 

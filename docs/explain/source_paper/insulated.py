@@ -1,4 +1,4 @@
-"""A thermistor on skin under a round insulating pad, as under aerogel, as a field in depth and radius.
+"""A thermistor on skin under a round insulating pad, computed as a field in depth and radius.
 
 Around the pad the skin touches the display, as the rig's own does; under it, the same layers see the display through
 the pad. Heat flows sideways in every layer. The display's temperature is given, so that the field is linear and its

@@ -1,4 +1,4 @@
-"""How much a mesh of the skin matters: graded meshes and fixed elements compared with a mesh-converged solution."""
+"""A study of the skin mesh: graded meshes or fixed elements against a mesh-converged solution."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The source paper's results compared with ours: Shani & Lineykin 2021, Figs. 3 to 6 and statements of its discussion.
+"""The source paper's results beside ours: Shani & Lineykin 2021, Figs. 3 to 6, with statements of its discussion.
 
 Functions play the paper's cooling step (6 °C at 3 °C/s, 4 s held, back) on a rig, `emulator_rig()` unless another is
 given. The paper's own curves are not reproduced: they are not available in numbers.

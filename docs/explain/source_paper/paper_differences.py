@@ -1,4 +1,4 @@
-"""Where our runs and the source paper differ, and why, in sentences whose numbers are computed on request."""
+"""Differences between our runs and the source paper, with reasons, in sentences with computed numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pictures of the studies: meshes against a converged one, and the figures of the source paper."""
+"""Pictures of the studies: meshes against a converged one, figures of the source paper."""
 
 from __future__ import annotations
 

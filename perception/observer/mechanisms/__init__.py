@@ -1,1 +1,1 @@
-"""Mechanisms of the observer: a module each, with its constants, its equation and its source."""
+"""Mechanisms of the observer: one module each, with constants, equation, source."""

@@ -1,4 +1,4 @@
-"""Adaptation: a level that follows what receptors receive, inside the neutral zone; inside it adaptation is complete.
+"""Adaptation: a level that follows the receptors' input, complete inside the neutral zone.
 
 The equations of limits, integration and adaptation stand in `kernels.kernels`, which computes all three at once.
 """

@@ -1,4 +1,4 @@
-"""Gain: the drive that feels like a threshold, and how the gain differs from presentation to presentation."""
+"""Gain: the drive that feels like a threshold, with its spread between presentations."""
 
 from dataclasses import dataclass
 

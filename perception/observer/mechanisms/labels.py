@@ -1,4 +1,4 @@
-"""Labels: cold is called warm now and then, and more often where warmth lingers."""
+"""Labels: occasional reports of cold as warm, more frequent after lingering warmth."""
 
 import math
 from dataclasses import dataclass

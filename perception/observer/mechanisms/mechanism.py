@@ -1,4 +1,4 @@
-"""A mechanism: constants as fields, and the stages of the chain that it takes part in."""
+"""A mechanism: constants as fields, methods for its stages of the chain."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Memory: how well episodes of an icon are remembered."""
+"""Memory: the precision of remembered episodes."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Spreads: how people differ."""
+"""Spreads: differences between people."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Tissue: where receptors lie, and under a thermode the contact and the effusivity of living tissue."""
+"""Tissue: depths of the receptors, effusivity of living tissue, contact under a thermode."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Drives that try to slip past the gate: rigs, devices, cues and pauses by chance, near limits and far beyond them."""
+"""Random rigs, devices, cues and pauses near or far beyond the limits, as attacks on the gate."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

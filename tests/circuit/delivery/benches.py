@@ -1,4 +1,4 @@
-"""What plays an export on the lanes of a rig, before faults: held currents, a prescribed display, or loops."""
+"""Benches that play an export without faults: held currents, a prescribed display, loops."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A part of the evidence: drives by chance judged by the gate, and what is written replayed from its files."""
+"""A share of the export evidence: random drives judged by the gate, their files replayed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Set-points followed by the module of the independent circuit, under a controller that is no code of thermicon.
+"""The module of the independent circuit under a controller that follows set-points.
 
 At every update of the driver the controller chooses the held current that brings the display to the set-point at the
 end of the update, within the driver's limits as they flow in each world. For three currents the display at that time is

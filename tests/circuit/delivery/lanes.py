@@ -1,4 +1,4 @@
-"""The independent circuit in many lanes at once: held currents, cut-offs and PI loops, each lane in one of the worlds.
+"""The independent circuit in many lanes with held currents, cut-offs or PI loops.
 
 A lane moves by an implicit step of second order (two stages, without ringing). Its matrix is tridiagonal, and a current
 changes two elements of it; elimination runs from deep tissue outwards, so that these two come last. Under a display

@@ -1,4 +1,4 @@
-"""Controllers at work on the independent circuit: PI loops with lag, delay and wrong sensors, and their cut-off.
+"""PI loops with lag, delay, wrong sensors or a cut-off on the independent circuit.
 
 Every lane is one controller around the rig in one world of its uncertainty. It shares nothing with thermicon but the
 files: set-points, and what their sidecar demands. A cut-off on a second sensor ends with zero current for good.

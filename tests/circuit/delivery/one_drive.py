@@ -1,4 +1,4 @@
-"""One icon, prepared or judged by itself, by the gate or by what a test puts in its place; and changed devices."""
+"""One icon, prepared or judged alone by the gate or a substitute, on changed devices."""
 
 from collections.abc import Callable
 from dataclasses import replace

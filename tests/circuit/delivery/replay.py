@@ -1,4 +1,4 @@
-"""Files played on the independent circuit: once, many times, with any pause, and what follows; held against limits.
+"""Files played on the independent circuit with any repetition or pause, checked against the limits.
 
 The limits are written out as published. `Beyond` maps each rule to how far it is passed: K for temperatures, a share
 for rates and doses; negative where all stays inside.

@@ -1,4 +1,4 @@
-"""A PID loop on a display thermistor, and a hot plate under its own control, beside ngspice running the same loops."""
+"""PID loops on a display thermistor or a hot plate, beside the same loops in ngspice."""
 
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""What devices make of cues: quantised, held, slewed, switched, in segments; and simulated again."""
+"""Delivery of cues by devices: quantised, held, slewed, switched, in segments, simulated again."""
 
 import re
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Devices: the shipped profiles, what their numbers mean, and what the door says of a file that is wrong."""
+"""Devices: shipped profiles, meaning of their numbers, errors of device files."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What is exported of everyday cues on everything shipped, and what is refused: `everyday.csv`.
+"""Exports or refusals of everyday cues on all shipped hardware: `everyday.csv`.
 
 ``python tests/circuit/delivery/test_everyday_cues.py`` writes the table anew, in half an hour of two cores.
 """

@@ -1,4 +1,4 @@
-"""Export without a disk: what is refused and why, what goes into files, and what a sidecar tells."""
+"""Export without a disk: refusals with reasons, contents of files, statements of a sidecar."""
 
 import hashlib
 import json

@@ -1,4 +1,4 @@
-"""Nothing unsafe is written: adversarial drives judged by the gate, and their files replayed by an independent circuit.
+"""Evidence that nothing unsafe is written: adversarial drives replayed by an independent circuit.
 
 The ordinary suite has four; `-m slow` has a dozen more, and judges 10,000 in parts of 100, two at a time, or as many as
 THERMICON_EVIDENCE says.

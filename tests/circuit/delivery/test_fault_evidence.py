@@ -1,4 +1,4 @@
-"""What sidecars demand of the hardware holds in any play, with any single fault: exports by chance and shipped icons.
+"""Evidence for the demands on the hardware: single faults in any play of random or shipped exports.
 
 `-m slow` tries 20 exports of each kind of device, or as many as THERMICON_FAULTS says, and that many shipped icons on
 shipped rigs (from 200 on all rigs with all icons, but for a family of which 12 are chosen), and prints what it tried.

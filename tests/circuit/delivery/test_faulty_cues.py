@@ -1,4 +1,4 @@
-"""Cues that a coarse look would pass: steps at the end, pulses between updates, a weak driver, trains in long holds."""
+"""Cues whose faults a coarse check would miss: late steps, short pulses, a weak driver, trains in long holds."""
 
 from pathlib import Path
 

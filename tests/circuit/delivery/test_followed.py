@@ -1,4 +1,4 @@
-"""The controller and the module that replay set-points: against exact steps, and against what the gate says."""
+"""The controlled module that replays set-points, against exact steps or the gate."""
 
 import json
 from typing import Any

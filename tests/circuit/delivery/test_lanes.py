@@ -1,4 +1,4 @@
-"""The lanes that faults run on: against exact steps of the independent circuit, with cut-offs and with loops."""
+"""Lanes with cut-offs or loops, against exact steps of the independent circuit."""
 
 import json
 

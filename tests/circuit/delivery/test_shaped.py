@@ -1,4 +1,4 @@
-"""Set-points shaped through the loop that plays them, followed by PI loops on the independent circuit of the tests.
+"""Shaped set-points, followed by PI loops on the independent circuit.
 
 The skin's design is that circuit's own: the cue itself under skin control, otherwise skin under a display that is where
 the cue says at the end of every update. A few exports run always, all of the README and of the shipped six if slow.

@@ -1,4 +1,4 @@
-"""Temperatures against time, for a controller around the rig's module; and what an open loop leaves open."""
+"""Temperatures for a controller around the rig's module, with bounds for an open loop."""
 
 import csv
 import io

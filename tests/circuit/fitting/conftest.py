@@ -1,4 +1,4 @@
-"""A rig with known truth, and logs of it."""
+"""A rig with known truth, with its logs."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What fits say of logs that laboratories have: coarser than the driver, of loops, of means, of slow sensors."""
+"""Fits of realistic logs: coarser than the driver, of loops, of means, of slow sensors."""
 
 import math
 import os

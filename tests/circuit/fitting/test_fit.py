@@ -1,4 +1,4 @@
-"""Fits of synthetic logs: the truth is found, and what a log cannot say is named."""
+"""Fits of synthetic logs: recovered truth, named limits of a log."""
 
 from pathlib import Path
 

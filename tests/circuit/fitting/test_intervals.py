@@ -1,4 +1,4 @@
-"""What a log knows: said before measuring, and of skin that is not the rig's."""
+"""Intervals of a fit: predicted before the measurement, wider for a skin unlike the rig's."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""What no log may be: every message names the file, the place and the cure."""
+"""Errors of logs, each with file, place, cure."""
 
 import json
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""The rig file of a fit: equal to the fitted rig, with logs, program and intervals, and the gate uses these."""
+"""The rig file of a fit: the fitted rig with logs, program, intervals for the gate."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""A drive that a log tells in part or not at all: intervals that hold, nothing narrowed, the display as the drive."""
+"""Fits with a partly or wholly unknown drive."""
 
 import numpy as np
 import pytest

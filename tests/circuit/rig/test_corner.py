@@ -1,4 +1,4 @@
-"""Corners of a rig: what no file says, within what physics allows, and one truth with `Rig.with_` inside the bounds."""
+"""Corners of a rig: values beyond its file, within physical bounds, equal to `Rig.with_` inside them."""
 
 from typing import Any
 

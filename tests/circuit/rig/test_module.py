@@ -1,6 +1,4 @@
-"""The Peltier module against its closed forms, its parameters from data sheets against published extractions, and
-three ways of giving it in a rig: by parameters, by data sheets or by name, never two at once.
-"""
+"""The Peltier module against closed forms, published extractions from data sheets, its three forms in a rig file."""
 
 from dataclasses import fields, replace
 from pathlib import Path

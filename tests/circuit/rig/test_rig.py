@@ -1,4 +1,4 @@
-"""Rigs at the door: what is shipped, what can be changed, and how a bad rig is refused."""
+"""Shipped rigs, their changes, refusals of bad rigs."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Shipped sites: rest by closed form, receptor depths in both conventions, and what a rig says of itself."""
+"""Shipped sites: rest by closed form, receptor depths in both conventions, notes of a rig."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A rig that is a thermode: its display is what it is told, the skin follows, and there is no current."""
+"""A thermode rig: a prescribed display above the skin, without current."""
 
 import json
 from pathlib import Path

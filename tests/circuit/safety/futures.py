@@ -1,4 +1,4 @@
-"""Every scenario of a drive row by row: its corners and endings, as the gate checks them in stretches."""
+"""Every scenario of a drive row by row, as the gate checks it in stretches."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""The gate: each rule made to trip by a cue of its own, what the worst case is for, records and their words."""
+"""The gate: each rule tripped by a cue of its own, the worst case, records in words."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""Played again and again: cycles, bounds, recovery and pauses against brute force, play after play."""
+"""Repeated plays against brute force: cycles, bounds, recovery, pauses."""
 
 import json
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Corners of a rig, and what follows a cue: against the single-lane kernel, an independent solver and closed forms."""
+"""Corners of a rig or endings of a cue, against independent solvers or closed forms."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A session and a summary against what can be checked by hand: single runs, sums, every rate that the run shows."""
+"""Sessions against checks by hand: single runs, sums, rates."""
 
 import math
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Single faults: what the hardware must do is simulated, and keeps every hard limit of temperature."""
+"""Simulated single faults: demands on the hardware that keep every hard limit of temperature."""
 
 import json
 from dataclasses import replace

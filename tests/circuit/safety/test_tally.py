@@ -1,4 +1,4 @@
-"""A tally of rules over stretches of rows: pieces are the whole, doses add up and are those of closed forms."""
+"""A tally of rules over stretches of rows: additive pieces, doses of closed forms."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What a thermode shows, with a pencil; cycles, bounds, recovery and faults of its displays against brute force."""
+"""The gate of thermodes, against hand calculation or brute force."""
 
 import numpy as np
 import pytest

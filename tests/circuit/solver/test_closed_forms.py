@@ -1,4 +1,4 @@
-"""Heat conduction with known answers: the circuit on the shipped mesh, and on cells a half and a quarter as long.
+"""Heat conduction with known solutions, on the shipped mesh or on finer cells.
 
 A display of 1e12 J/K steps a surface. A module whose only effect is its Joule heat, on a plate without capacity, is a
 constant heat flow. The reference values are proved: by their closed forms and by inverting their transforms.

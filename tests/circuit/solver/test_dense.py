@@ -1,6 +1,4 @@
-"""The circuit against one dense linear system under a constant current, assembled apart from the solver and solved
-exactly: as shipped, and with a passive heat sink.
-"""
+"""The circuit against one dense linear system under a constant current, with or without a passive heat sink."""
 
 from __future__ import annotations
 

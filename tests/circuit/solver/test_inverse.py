@@ -1,4 +1,4 @@
-"""From a cue to the current that makes it: reached, held without ringing, and honest about what it cannot do."""
+"""From a cue to its current: the target reached, held without ringing, misses reported."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Many cues on many rigs: what one at a time gives, and receptors by superposition beside the full solution."""
+"""Many cues on many rigs, against one at a time or the full solution."""
 
 import math
 from collections.abc import Sequence

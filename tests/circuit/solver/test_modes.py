@@ -1,4 +1,4 @@
-"""Modes against the kernel's steps, closed forms and themselves over time: constant currents, prescribed displays."""
+"""Modes against the kernel's steps or closed forms, under constant currents or prescribed displays."""
 
 import numpy as np
 import pytest

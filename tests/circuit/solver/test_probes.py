@@ -1,4 +1,4 @@
-"""Probes, where they sit, how they lag and what they add to a trace; temperature and heat flow at any depth."""
+"""Probes: their place, lag, columns, and temperature at any depth."""
 
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Steps and waves that a rig plays: judged when they arrive, and the nearest shape within reach."""
+"""Steps or waves on a rig: time of arrival, the nearest reachable shape."""
 
 import math
 

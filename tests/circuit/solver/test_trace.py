@@ -1,4 +1,4 @@
-"""Drives and traces: rows, columns, files, pictures and tolerances, and what rigs and drives refuse."""
+"""Drives or traces: rows, columns, files, pictures, tolerances, refusals."""
 
 import json
 import sys

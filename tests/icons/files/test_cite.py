@@ -1,4 +1,4 @@
-"""What a paper says of a set: the paragraph, and the bibliography that knows its sources."""
+"""The methods paragraph about a set, with its bibliography."""
 
 import re
 from pathlib import Path

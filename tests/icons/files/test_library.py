@@ -1,4 +1,4 @@
-"""Shipped sets are what they say; files are found, or it is said why not."""
+"""Shipped sets as listed, missing files with a reason."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Damaged files: each gives a set or CueErrors, soon, with places in the file and suggestions that cure."""
+"""Damaged cue files: a set or CueErrors in short time, with suggestions that cure."""
 
 import re
 import time

@@ -1,4 +1,4 @@
-"""What recovery relies on in lark's private state: a new version of lark that changes it fails here first."""
+"""The private state of lark that recovery depends on."""
 
 import re
 from importlib import resources

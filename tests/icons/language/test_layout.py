@@ -1,4 +1,4 @@
-"""The formatter: what it writes means the same, keeps every comment, and is left alone by the next run."""
+"""The formatter: same meaning, all comments, stable in the next run."""
 
 import re
 from collections import Counter

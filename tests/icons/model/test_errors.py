@@ -1,4 +1,4 @@
-"""Every mistake in the table is told with its code, place and words; every suggestion is itself sound."""
+"""Every error of the table with code, place, words, sound suggestions."""
 
 from typing import Any
 

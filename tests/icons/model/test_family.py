@@ -1,4 +1,4 @@
-"""A family is a sequence of icons that are made when asked for; it proves itself on construction."""
+"""A family as a lazy sequence of icons, checked on construction."""
 
 import pytest
 

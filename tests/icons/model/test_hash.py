@@ -1,4 +1,4 @@
-"""The content hash: the same for equal content, in every process, and another one when anything changes."""
+"""The content hash: equal for equal content in every process, different after any change."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""A family is sound exactly when each member, written as an icon, is; its summary covers them all."""
+"""Members of a family, sound exactly when each is sound as an icon."""
 
 from itertools import product
 from typing import Any

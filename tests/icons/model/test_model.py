@@ -1,4 +1,4 @@
-"""Objects built in Python prove themselves, say who they are, and compare by value."""
+"""Objects built in Python: checks on construction, representation, comparison by value."""
 
 import copy
 import pickle

@@ -1,4 +1,4 @@
-"""Whatever can be built can be written and read back, equal to the last digit."""
+"""Round trips of random models through text, exact to the last digit."""
 
 from dataclasses import replace
 from fractions import Fraction

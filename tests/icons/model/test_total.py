@@ -1,4 +1,4 @@
-"""Parsing is total: whatever the text, there is a set or there are CueErrors, soon, and nothing else."""
+"""Totality of parsing: a set or CueErrors for any text."""
 
 import re
 import time

@@ -1,4 +1,4 @@
-"""Plots and pictures: what they show, and that no text of a file gets out of its place."""
+"""Plots or pictures of icons, with any text in its place."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""Corners of recordings: those that were there are found again, with few of them, and the tolerance is kept."""
+"""Corners of recordings: few, at the true places, within the tolerance."""
 
 from itertools import pairwise
 

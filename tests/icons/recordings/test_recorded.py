@@ -1,4 +1,4 @@
-"""Recordings in CSV files as icons: how they read, in which shapes tables come, and every message about them."""
+"""Recordings in CSV files as icons: shapes of tables, readings, every message."""
 
 from pathlib import Path
 from typing import Any

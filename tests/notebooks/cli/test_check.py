@@ -1,4 +1,4 @@
-"""``thermicon check``: one line a file, and quick; with ``--fix``, files in canonical layout, whole or untouched."""
+"""``thermicon check``: one line per file, canonical layout by ``--fix``."""
 
 import stat
 import subprocess

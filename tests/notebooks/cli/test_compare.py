@@ -1,4 +1,4 @@
-"""``thermicon compare``: rigs, icons, sets, traces and logs; one table of differences, one figure."""
+"""``thermicon compare``: rigs, icons, sets, traces or logs in one table with one figure."""
 
 import re
 from pathlib import Path

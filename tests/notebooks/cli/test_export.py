@@ -1,4 +1,4 @@
-"""``thermicon export``: files, words, exit codes, pauses and hardware; what is refused leaves nothing."""
+"""``thermicon export``: files, words, exit codes, pauses, hardware, clean refusals."""
 
 import json
 import re

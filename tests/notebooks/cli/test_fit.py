@@ -1,4 +1,4 @@
-"""``thermicon fit``: what it prints, what it writes, and what it refuses."""
+"""``thermicon fit``: output, files, refusals."""
 
 import re
 from pathlib import Path

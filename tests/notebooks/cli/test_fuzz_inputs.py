@@ -1,4 +1,4 @@
-"""Tens of thousands of damaged files of every kind, and settings: each is read or refused in words, soon.
+"""Tens of thousands of damaged input files or settings, each read or refused in words.
 
 ``pytest -m slow tests/notebooks/cli/test_fuzz_inputs.py`` examines 50,000 of them in some minutes on two cores;
 THERMICON_FUZZ=2000 fewer. Mutations are seeded, so that a failure comes again.

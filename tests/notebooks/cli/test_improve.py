@@ -1,4 +1,4 @@
-"""``thermicon improve``: what scripts read, what people read, and what is found."""
+"""``thermicon improve``: JSON for scripts, text for people, results."""
 
 import json
 from collections.abc import Callable

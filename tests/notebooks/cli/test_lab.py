@@ -1,4 +1,4 @@
-"""``thermicon lab``: which notebooks are written and which are kept, and how the servers start and end."""
+"""``thermicon lab``: written or kept notebooks, start and end of its servers."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""``thermicon list`` and ``convert``: what is shipped, copies to start from, and icons in other forms."""
+"""``thermicon list`` and ``convert``: shipped files with copies to start from, icons in other forms."""
 
 from pathlib import Path
 from typing import Any

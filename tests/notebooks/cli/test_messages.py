@@ -1,4 +1,4 @@
-"""What the commands say is data: one message for everything that can be wrong, no traceback, nothing half-written."""
+"""Messages of the commands: one for each fault, without traceback or half-written files."""
 
 import shlex
 from pathlib import Path

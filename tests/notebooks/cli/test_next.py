@@ -1,4 +1,4 @@
-"""What a screen names as next, followed to its end: an export, or a reason; nothing comes twice."""
+"""The next command on each screen, followed to an export or a reason."""
 
 import re
 import shlex

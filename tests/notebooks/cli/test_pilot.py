@@ -1,4 +1,4 @@
-"""``thermicon pilot``, as a plan and with answers: tables for people and files for scripts."""
+"""``thermicon pilot`` as a plan or with answers."""
 
 import json
 import shlex

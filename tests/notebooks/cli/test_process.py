@@ -1,4 +1,4 @@
-"""How the program starts, is interrupted and loses its reader; and what ``thermicon doctor`` finds wrong with it."""
+"""The process of the program: start, interruption, closed pipes, ``thermicon doctor``."""
 
 import json
 import os

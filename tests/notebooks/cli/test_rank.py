@@ -1,4 +1,4 @@
-"""``thermicon rank``: the JSON that scripts read, the table that people read, the next command, and other observers."""
+"""``thermicon rank``: JSON for scripts, a table for people, the next command, other observers."""
 
 import json
 from collections.abc import Callable

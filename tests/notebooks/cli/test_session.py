@@ -1,4 +1,4 @@
-"""A session by ``thermicon simulate``: the report, its files and its figure."""
+"""A session by ``thermicon simulate``: report, files, figure."""
 
 import json
 from pathlib import Path

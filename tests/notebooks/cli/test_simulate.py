@@ -1,4 +1,4 @@
-"""``thermicon simulate``: the trace file and the netlist as scripts expect them, the summary as people do."""
+"""``thermicon simulate``: trace file, netlist, summary."""
 
 import subprocess
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""``thermicon study``: the folder, the verdicts, and every way in which a study is refused."""
+"""``thermicon study``: its folder, verdicts, every refusal."""
 
 import csv
 import json

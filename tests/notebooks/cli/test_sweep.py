@@ -1,4 +1,4 @@
-"""``thermicon sweep``: the table as scripts read it, the summary lines and figures as people do."""
+"""``thermicon sweep``: the table for scripts, summary lines with figures for people."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The rig that nobody named: that of the set's site; and how often, and how long, a rig is warned of."""
+"""The default rig of a set's site, with its warnings."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""``thermicon validate``: the table and the JSON; and the notebook that shows the same numbers."""
+"""``thermicon validate``: table, JSON, the notebook with the same numbers."""
 
 import json
 from pathlib import Path

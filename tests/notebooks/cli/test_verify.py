@@ -1,4 +1,4 @@
-"""``export --verify``: whatever does not belong together is reported, with the file and the cure."""
+"""``export --verify``: every mismatch reported with its file and cure."""
 
 import json
 import random

@@ -1,4 +1,4 @@
-"""Figures for people: one colour and one style of labels everywhere, clocks and what-ifs told."""
+"""Figures for people: one style of colours, labels, clocks everywhere."""
 
 import numpy as np
 import pandas as pd

@@ -1,4 +1,4 @@
-"""Every figure of a command can be read, on the screen and in print: words lie inside it and apart from one another."""
+"""Legibility of every command's figures on the screen and in print."""
 
 from pathlib import Path
 

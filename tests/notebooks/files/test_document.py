@@ -1,4 +1,4 @@
-"""Documents: cue files that are edited, undo and redo, and versions and unsaved text beside them."""
+"""Documents: edited cue files with undo, redo, versions, unsaved text."""
 
 import os
 import subprocess

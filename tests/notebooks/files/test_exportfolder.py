@@ -1,4 +1,4 @@
-"""An export folder: all files of an export or none, whenever it ends, and nobody's work is lost."""
+"""An export folder: all files of an export or none, without loss of other files."""
 
 import json
 import os

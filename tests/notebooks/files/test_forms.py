@@ -1,4 +1,4 @@
-"""Tables as instruments and programs write them: every command reads the same numbers, or names a cure that works."""
+"""Tables of all instruments: equal numbers in every command, or a cure that works."""
 
 import multiprocessing
 import random

@@ -1,4 +1,4 @@
-"""Files made to harm: endless, steering the terminal, or wrapping a number; each ends with one clear message."""
+"""Files made to harm: endless, steering the terminal, or wrapping a number."""
 
 import os
 import sys

@@ -1,4 +1,4 @@
-"""``rank --report``: one page that stands alone, escapes what people wrote, and is the same bytes every time."""
+"""``rank --report``: one self-contained page, escaped texts, the same bytes every time."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Sentences of reports: counts in the singular, goals, choices, and how far few participants reach."""
+"""Sentences of reports: singular counts, goals, choices, the reach of few participants."""
 
 import pytest
 

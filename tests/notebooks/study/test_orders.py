@@ -1,4 +1,4 @@
-"""Orders of play: designs against their definition, and what no order may have."""
+"""Orders of play: designs against their definition."""
 
 from collections import Counter
 from itertools import pairwise

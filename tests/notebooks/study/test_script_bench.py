@@ -1,4 +1,4 @@
-"""The display of a study's script: it plays without blocking, guards and stops, on stand-ins for the hardware."""
+"""The display of a study's script on simulated hardware: play without blocking, guards, stops."""
 
 import importlib
 import sys

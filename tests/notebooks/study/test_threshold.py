@@ -1,4 +1,4 @@
-"""A threshold run: judged levels alone are played, and QUEST+ recovers the threshold of a virtual observer."""
+"""A threshold run: judged levels alone, the threshold of a virtual observer recovered by QUEST+."""
 
 import importlib
 import json

@@ -1,4 +1,4 @@
-"""Gap and landing, derived from simulation and checked against known cases; and the clock of a session."""
+"""Gap between icons, landing of the hand, clock of a session."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Corners dragged: the right numbers change, nothing else in the text, and what cannot be is refused in a sentence."""
+"""Dragged corners: the right numbers change, or a sentence refuses."""
 
 import re
 

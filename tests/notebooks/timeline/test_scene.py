@@ -1,4 +1,4 @@
-"""The scene of a text on a rig, and its frame: what is drawn and said, what the canvas is promised, what cannot be."""
+"""The scene of a text on a rig, with its frame for the canvas."""
 
 import json
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The life of a document in the workbench, without a browser: files, icons, rigs, unsaved text, and what goes wrong.
+"""The document bar without a browser: files, icons, rigs, unsaved text, faults.
 
 What a document does by itself is tested in `tests/notebooks/files/test_document.py`.
 """

@@ -1,4 +1,4 @@
-"""The export view without a browser: what is prepared, what is refused, and what is written."""
+"""The export view without a browser: prepared, refused or written drives."""
 
 import json
 from dataclasses import replace

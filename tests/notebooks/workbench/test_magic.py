@@ -1,4 +1,4 @@
-"""The cell magic: in a real shell, in a notebook that is run from end to end, and every message it may give."""
+"""The cell magic in a real shell or in a whole notebook, with every message."""
 
 import subprocess
 import sys

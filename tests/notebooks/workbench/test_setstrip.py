@@ -1,4 +1,4 @@
-"""The strip of the design view without a browser: what it says of set, goal and icon, and when."""
+"""The strip of the design view without a browser: set, goal, current icon."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The set view without a browser: what it ranks, what it says, and what a click and a button do."""
+"""The set view without a browser: rankings, texts, clicks."""
 
 from collections.abc import Iterator
 from pathlib import Path

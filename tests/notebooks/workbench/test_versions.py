@@ -1,4 +1,4 @@
-"""The list of versions without a browser: what is kept, compared, brought back and dropped."""
+"""The list of versions without a browser: kept, compared, restored, dropped."""
 
 import re
 from html import unescape

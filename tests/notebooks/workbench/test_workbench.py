@@ -1,4 +1,4 @@
-"""The workbench without a browser: what its handlers answer to what the canvas sends, and its knobs."""
+"""The workbench without a browser: answers to the canvas, knobs."""
 
 import time
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""``python -m thermicon.perception.evidence``: what it refuses, and what it writes from finished chains and parts."""
+"""``python -m thermicon.perception.evidence``: refusals, results from finished chains."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""That published experiments run as they are described; whether they come out right is not tested here.
+"""Published experiments run as described, whatever their results.
 
 A test that demanded a published result would be a reason to tune for it: misses are results.
 """

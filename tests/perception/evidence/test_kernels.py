@@ -1,4 +1,4 @@
-"""First passage and mechanisms of the likelihood one by one, against closed forms, courses and drawn noise."""
+"""First passage or mechanisms of the likelihood one by one, against closed forms or drawn noise."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The search for the maximum: a known optimum, the shipped one found again, and constants that are known (slow)."""
+"""The search for the maximum: a known optimum, the shipped one again, known constants (slow)."""
 
 import math
 from collections.abc import Iterator

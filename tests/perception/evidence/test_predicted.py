@@ -1,4 +1,4 @@
-"""Observers that the evidence leaves possible, what they predict, and what skin temperature alone predicts."""
+"""Predictions of observers from the posterior or from skin temperature alone."""
 
 import math
 

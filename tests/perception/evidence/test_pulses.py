@@ -1,4 +1,4 @@
-"""What is remembered of short pulses: distances that are distances, numbers that count, and a bound that is refused."""
+"""Memory of short pulses: metric distances, effective numbers, a refused bound."""
 
 import re
 from itertools import permutations

@@ -1,4 +1,4 @@
-"""The evidence loads, says where it is from, and refuses what is wrong with its place."""
+"""The evidence as data with sources, or refused at a named place."""
 
 import math
 from pathlib import Path

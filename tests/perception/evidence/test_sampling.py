@@ -1,4 +1,4 @@
-"""Chains, surrogate and diagnostics on posteriors that can be written down."""
+"""Chains, surrogate, diagnostics, all on posteriors in closed form."""
 
 from dataclasses import dataclass
 from types import SimpleNamespace

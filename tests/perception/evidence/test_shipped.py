@@ -1,4 +1,4 @@
-"""The shipped results: of the shipped inputs, at a maximum of the posterior, sampled, and as good as the pages say."""
+"""The shipped results: from the shipped inputs, at a maximum of the posterior, sampled, as good as the pages say."""
 
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""Targets are data: they load, name records that are there, and are judged by every rule in words."""
+"""Targets as data: existing records, every rule judged in words."""
 
 import math
 from dataclasses import replace

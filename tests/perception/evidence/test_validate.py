@@ -1,4 +1,4 @@
-"""The report has every target, says what its records say, and is the same for the same seed.
+"""The validation report: every target with its records, the same for the same seed.
 
 Whether a target holds is not tested: misses are results.
 """

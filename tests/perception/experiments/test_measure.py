@@ -1,4 +1,4 @@
-"""What a new laboratory would measure lies where the evidence has it, and is asked as the evidence was."""
+"""Simulated measurements of a new laboratory in agreement with the evidence."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Episodes that are remembered: where they begin and end, their features, and distances between them."""
+"""Remembered episodes: bounds, features, distances."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Scores of confusions, and intervals for a new laboratory."""
+"""Scores of confusions with intervals for a new laboratory."""
 
 import json
 import math

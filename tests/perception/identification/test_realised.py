@@ -1,4 +1,4 @@
-"""Designed against delivered, as people feel it."""
+"""Designed against delivered icons as people feel them."""
 
 from dataclasses import replace
 

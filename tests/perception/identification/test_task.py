@@ -1,4 +1,4 @@
-"""How icons are asked for: what the icon before leaves behind, beside the session that really plays both icons."""
+"""The identification task with carry-over, beside a session that plays both icons."""
 
 from dataclasses import replace
 from typing import Any

@@ -1,4 +1,4 @@
-"""Compiled loops beside their equations written out, at the sizes where a loop in blocks goes wrong first."""
+"""Compiled loops beside their equations written out, at sizes around a block's ends."""
 
 import math
 from functools import cache

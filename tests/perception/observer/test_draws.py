@@ -1,4 +1,4 @@
-"""Posterior draws: consistent observers, and every way in which a file can be wrong."""
+"""Posterior draws: consistent observers, every error of a file."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A mechanism is one module, one base of the observer and one prior: it then acts wherever people feel something."""
+"""A new mechanism from one module, one base of the observer and one prior."""
 
 import json
 import shutil

@@ -1,4 +1,4 @@
-"""Variants of the observer, observers from draws or from records, and what of a file cannot be used."""
+"""Variants of the observer, observers from draws or records, unusable files."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""People drawn at random, and the priors of the constants: every number has a source or says that it has none."""
+"""People drawn at random, with sourced priors of the constants."""
 
 from dataclasses import fields, replace
 from typing import Any

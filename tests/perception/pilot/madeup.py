@@ -1,4 +1,4 @@
-"""Answers and measurements of made-up laboratories, whose truth is known."""
+"""Answers or measurements of made-up laboratories with a known truth."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""Scores of observed answers: closed forms, bias, and an interval that covers."""
+"""Scores of observed answers: closed forms, bias, coverage of the interval."""
 
 import math
 

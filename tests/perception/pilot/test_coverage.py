@@ -1,4 +1,4 @@
-"""Judged on made-up laboratories: what a pilot says of people who were left out, of the next set, of measurements."""
+"""A pilot on made-up laboratories: coverage for left-out people, the next set, measurements."""
 
 from __future__ import annotations
 

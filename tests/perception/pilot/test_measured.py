@@ -1,4 +1,4 @@
-"""Thresholds, reaction times and ratings condition the prediction: what they move, and by how much."""
+"""The prediction conditioned on thresholds, reaction times or ratings."""
 
 from dataclasses import replace
 

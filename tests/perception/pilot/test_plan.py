@@ -1,4 +1,4 @@
-"""Planning: what sizes of experiments give."""
+"""Plans of experiments: the precision of each size."""
 
 import math
 from typing import Any

@@ -1,4 +1,4 @@
-"""A sealed prediction: it reaches its own best if it is true, and what does not belong to it is refused."""
+"""A sealed prediction: its own best if true, refusals of foreign answers."""
 
 import json
 from collections.abc import Callable

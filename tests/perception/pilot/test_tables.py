@@ -1,4 +1,4 @@
-"""Tables of answers and of measurements: what is read, and what each bad table is refused with."""
+"""Tables of answers or measurements: accepted forms, errors."""
 
 import math
 from collections import Counter

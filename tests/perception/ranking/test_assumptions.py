@@ -1,4 +1,4 @@
-"""What a ranking depends on most: named where it moves something, silent where it does not."""
+"""The most influential assumptions of a ranking: named if they move a result, else not."""
 
 import numpy as np
 import pytest

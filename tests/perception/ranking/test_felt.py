@@ -1,4 +1,4 @@
-"""One definition of felt: a percept, a ranking and an export show the same probability for the same people."""
+"""One probability of detection in a percept, a ranking or an export for the same people."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Why two icons are distinguished: the components of their distance, and the sentences that name them."""
+"""Reasons for a pair's distance: its components, in sentences."""
 
 import math
 import re

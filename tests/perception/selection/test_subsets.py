@@ -1,4 +1,4 @@
-"""Subsets of icons: the best by the nearest pair, and by what is named right."""
+"""Subsets of icons: the best by the nearest pair or by identification."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Stimuli on a bench lie on their curves; what lies outside the data is said."""
+"""Stimuli on a bench, with warnings outside the data."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Detection and response times: false alarms, one look, noise that is drawn, and the rule written out."""
+"""Detection or response times: false alarms, one look, drawn noise, the rule written out."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""From receptors to sensation: drives against closed forms and scipy, then a power that becomes logarithmic."""
+"""From receptors to sensation: drives against closed forms or scipy, the transducer's two ranges."""
 
 import math
 from dataclasses import replace

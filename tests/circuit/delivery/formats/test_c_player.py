@@ -1,4 +1,4 @@
-"""The player for microcontrollers, compiled by the system's C compiler and run against a simulated plate."""
+"""The microcontroller player, compiled by the system's C compiler, on a simulated plate."""
 
 import shutil
 import subprocess

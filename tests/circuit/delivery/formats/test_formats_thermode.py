@@ -1,4 +1,4 @@
-"""Files for a thermode, and PsychoPy's: read back by parsers written from what the public sources say."""
+"""Thermode and PsychoPy files, read back by parsers written from public sources."""
 
 import ast
 import csv

@@ -1,4 +1,4 @@
-"""Players with bad clocks and sensors, restarts and aborts at any instant: they put out the judged drive, or they stop.
+"""Players with bad clocks or sensors, restarts or aborts: the judged drive, or a stop.
 
 `-m slow` makes 500 runs, or fewer if THERMICON_EVIDENCE says so, half of them in C. All times are true ones, by which a
 clock is judged too.

@@ -1,4 +1,4 @@
-"""Players that come with PsychoPy drives, run with a clock, an NI device and a serial line that are stand-ins."""
+"""PsychoPy players on a simulated clock, NI device or serial line."""
 
 import csv
 import io
