@@ -142,7 +142,8 @@ def _fits(value: Any, hint: Any) -> bool:
         some = hasattr(value, "__getitem__" if origin is Sequence else "__iter__")
         if not some or isinstance(value, str | bytes | Mapping) or getattr(value, "ndim", 1) != 1:
             return False
-        return iter(value) is value or all(_fits(each, inner[0]) for each in value)
+        alike = getattr(getattr(value, "dtype", None), "kind", "O") in "fiu"  # of an array of numbers, one says it all
+        return iter(value) is value or all(_fits(each, inner[0]) for each in (value[:1] if alike else value))
     if origin is Callable or origin is Any or not isinstance(origin, type):
         return origin is not Callable or callable(value)
     return isinstance(value, origin)
