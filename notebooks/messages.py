@@ -237,10 +237,18 @@ def check_draws(model: ObserverModel, asked: int | None, option: str, usual: int
 
 
 @contextlib.contextmanager
-def progress_bar(what: str) -> Iterator[Progress | None]:
-    """Give a function of (done, total) that draws a bar with the time left, or None when stderr is not a terminal."""
+def progress_bar(what: str, then: str = "") -> Iterator[Progress | None]:
+    """Give a function of (done, total) that draws a bar with the time left, or None when stderr is not a terminal.
+
+    Where something long follows `then`, each of several steps is a line instead.
+    """
     if _QUIET.get() or not sys.stderr.isatty():
-        yield None
+
+        def tell(done: int, total: int) -> None:
+            if total > 1:
+                note(f"{what}: {done} of {total}{f'; {then} …' if done == total else ''}")
+
+        yield tell if then else None
         return
     from tqdm import tqdm
 

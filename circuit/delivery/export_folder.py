@@ -42,11 +42,11 @@ def check_export_folder(folder: Path, replace: bool = False, how: str = HOW) -> 
             f"you; give a folder inside one that is"
         )
     there = _listed(goal)
-    if there and not replace:
-        raise OutputError(f"{kept_text(folder, there)}; {how}")
     if there:
         _check_owned(goal)
         _check_owned(before_of(goal))
+        if not replace:
+            raise OutputError(f"{kept_text(folder, there)}; {how}")
     return goal
 
 

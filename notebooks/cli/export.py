@@ -89,7 +89,7 @@ def export_command(
     chosen = pick(whole, icon)
     check_names([one.name for one in chosen], form)
     warned: list[str] = []
-    with progress_bar("simulating") as progress:
+    with progress_bar("simulating", "judging all together") as progress:
         felt = partial(felt_in, rest=others(whole, chosen), warn=warned.append, tail_s=tail)
         ready = export(
             chosen, where, device, form, tail_s=tail, pause_s=pause, force=force, felt=felt, step=progress

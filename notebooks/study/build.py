@@ -36,7 +36,7 @@ from .timing import Landing, find_gap, find_landing
 if TYPE_CHECKING:
     from thermicon.circuit import Device, Rig
 
-ProgressBar = Callable[[str], AbstractContextManager[Progress | None]]
+ProgressBar = Callable[..., AbstractContextManager[Progress | None]]
 
 FELT, UNFELT = "felt", "not-felt"
 """Answers in a threshold run."""
@@ -81,6 +81,8 @@ class Plan:
 def read_materials(source: str | Path) -> Materials:
     """Read a study file and what it names, beside it or shipped; every fault is raised before anything is simulated."""
     from thermicon.circuit import Device
+    from thermicon.circuit.delivery.formats import FormatError, load_format
+    from thermicon.circuit.delivery.pack import check_names
     from thermicon.icons import read_cue
 
     text = study_text(source)
@@ -93,7 +95,11 @@ def read_materials(source: str | Path) -> Materials:
     else:
         icons = read_cue(_beside(stimuli.set or "", folder))
         rig = _rig_of(stimuli, folder, icons.context.site)
-    device = Device.load(_beside(stimuli.device, folder))
+    device, form = Device.load(_beside(stimuli.device, folder)), load_format(stimuli.format)
+    try:
+        form.check(device)
+    except FormatError as problem:
+        raise StudyError(f"{source}: stimuli.device: {problem}") from None
     if not stimuli.icons:
         check_counts(study, len(icons))
     for name in stimuli.icons:
@@ -106,6 +112,7 @@ def read_materials(source: str | Path) -> Materials:
         )
     chosen = tuple(icons[name] for name in stimuli.icons) if stimuli.icons else tuple(icons)
     check_counts(study, len(chosen))
+    check_names([icon.name for icon in chosen], form)
     contents = {
         "icons": icons.content_hash,
         "rig": rig.document,
@@ -133,14 +140,9 @@ def make_plan(materials: Materials, bar: ProgressBar, say: Callable[[str], None]
 
     `say` is told the plan before the judgement, which takes most of the time.
     """
-    from thermicon.circuit.delivery.formats import load_format
-    from thermicon.circuit.delivery.pack import check_names
     from thermicon.circuit.solver.simulate import duration_s
 
     study, rig, icons = materials.study, materials.rig, materials.chosen
-    form = load_format(study.stimuli.format)
-    form.check(materials.device)
-    check_names([icon.name for icon in icons], form)
     held = materials.device.kind.regulated
     mean_s = sum(duration_s(icon, rig) for icon in icons) / len(icons)
     plays = plays_of(study, len(icons))
@@ -156,10 +158,10 @@ def make_plan(materials: Materials, bar: ProgressBar, say: Callable[[str], None]
         f"{minutes:.0f} min each, gap {gap.gap_s:g} s: {gap.reason}; judging drives and sessions …"
     )
     rig = _whole_session(rig, plays, mean_s, gap.gap_s)
-    with bar("drives") as progress:
+    with bar("drives", "judging all together") as progress:
         ready, gap = judge_drives(icons, rig, study, gap, materials.device, progress)
     check_session_time(plays, mean_s, gap.gap_s)
-    with bar("sessions") as progress:
+    with bar("sessions", "writing") as progress:
         judged = judge_sessions(_judged_courses(materials, courses), icons, rig, held, gap.gap_s, progress)
     return Plan(materials, JudgedStudy(ready, gap, *judged), landing, courses)
 

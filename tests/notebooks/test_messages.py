@@ -31,7 +31,7 @@ def test_a_study_says_its_plan_before_it_is_judged(tmp_path: Path, monkeypatch: 
     told: list[str] = []
 
     @contextmanager
-    def bar(what: str) -> Iterator[Any]:
+    def bar(what: str, then: str = "") -> Iterator[Any]:
         told.append(what)
         yield lambda done, total: told.append("a step")
 

@@ -111,7 +111,8 @@ class Format:
     `device` is used where none is named; `stem` makes the file's name from the icon's, `suffix_by` the suffix where it
     depends on the device; `how` explains how to play it. `write` gives the bytes of one drive, `columns` what is in
     them, `facts` further facts for the sidecar. `player` gives the files of the whole set, named in
-    `set_files`, from all its drives and what the hardware must prevent. `needs` is the package that writes it.
+    `set_files`, from all its drives and what the hardware must prevent. `needs` is the package that writes it, `fits`
+    raises FormatError for a device that it has no use for.
     """
 
     name: str
@@ -129,6 +130,7 @@ class Format:
     player: Callable[[Sequence[Played], MustPrevent], dict[str, bytes]] | None = None
     set_files: tuple[str, ...] = ()
     needs: str = ""
+    fits: Callable[[Device], None] | None = None
 
     def __repr__(self) -> str:
         return f"Format({self.name!r}, *{self.suffix}, for {', '.join(self.takes)})"
@@ -143,8 +145,10 @@ class Format:
         if device.driven_by not in self.takes:
             raise FormatError(
                 f"{self.name} is for devices driven by {' or '.join(self.takes)}; {device.name} is driven by "
-                f"{device.driven_by}"
+                f"{device.driven_by}: use {self.device}, or another format"
             )
+        if self.fits is not None:
+            self.fits(device)
         if self.needs and find_spec(self.needs.lower()) is None:
             raise FormatError(f"{self.name} needs {self.needs}, which is not installed: {install(self.needs)}")
 

@@ -10,6 +10,7 @@ import numpy as np
 from ...play.guard import Numbers
 from ...play.script import COURSE_EVERY_S, script
 from ..delivered_drive import DeliveredDrive
+from ..device import Device
 from .c_array import command_for
 from .form import Column, Format, FormatError, MustPrevent, Played, course_C, events_in, samples_of
 from .tables import CSV, SERIAL, SETPOINT_CSV, has_voltage, volts_of, write_rows
@@ -46,6 +47,15 @@ def write(delivery: DeliveredDrive) -> bytes:
             f"{delivery.rate_Hz:g} Hz: use a device with a lower rate, a shorter icon, or the format tdms"
         )
     return write_rows(delivery, rows)
+
+
+def fits(device: Device) -> None:
+    """Raise FormatError for a sound interface, which the player cannot drive."""
+    if device.dc_coupled:
+        raise FormatError(
+            f"psychopy: neither its player nor a study plays on a sound interface such as {device.name}; use "
+            f"ni-analogue-output, closed-loop-controller or qst-tcs2, or play the files of export --to wav yourself"
+        )
 
 
 def set_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
@@ -125,4 +135,5 @@ FORMAT = Format(
     suffix_by=lambda delivery: _drive(delivery).suffix,
     player=set_files,
     set_files=SET_FILES,
+    fits=fits,
 )

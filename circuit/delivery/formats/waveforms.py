@@ -7,6 +7,7 @@ import numpy as np
 
 from ...program import own_version
 from ..delivered_drive import DeliveredDrive
+from ..device import Device
 from .form import PLAYS_SAMPLES, PLAYS_TEMPERATURES, Column, Format, FormatError, samples_of
 from .tables import CODE, VOLTAGE, has_voltage, volts_of
 
@@ -38,8 +39,8 @@ def frames(delivery: DeliveredDrive) -> tuple[int, int]:
             return frame_rate, each
     raise FormatError(
         f"wav: no rate that sound interfaces play ({min(FRAME_RATES_HZ):,} to {max(FRAME_RATES_HZ):,} frames a second) "
-        f"is a whole multiple of the {rate:g} Hz of {delivery.device.name}; set driver.update_Hz to 100, or use "
-        f"dc-coupled-audio"
+        f"is a whole multiple of the {rate:g} Hz of {delivery.device.name}; set driver.update_Hz to 100, which "
+        f"dc-coupled-audio plays"
     )
 
 
@@ -49,16 +50,20 @@ def wav_facts(delivery: DeliveredDrive) -> dict[str, object]:
     return {"frames_per_second": frame_rate, "frames_per_update": each}
 
 
-def wav_write(delivery: DeliveredDrive) -> bytes:
-    """The file; raises FormatError for a device that is not DC-coupled, or a rate that cannot be reached."""
-    device, samples = delivery.device, samples_of(delivery)
-    if device.levels != "fixed" or samples.scale.offset != 0:
+def wav_fits(device: Device) -> None:
+    """Raise FormatError for a device that is not DC-coupled, or has levels other than those of full scale."""
+    if device.levels != "fixed" or device.scale(0.0).offset != 0:
         raise FormatError(f"wav has no levels of its own; {device.name} sets its levels by the waveform: use another")
     if not device.dc_coupled:
         raise FormatError(
             f"wav: {device.name} is not said to be DC-coupled (dc_coupled = true); an output that is not loses every "
             f"held level; use dc-coupled-audio, or another format"
         )
+
+
+def wav_write(delivery: DeliveredDrive) -> bytes:
+    """The file; raises FormatError for a rate that cannot be reached, and too many frames."""
+    samples = samples_of(delivery)
     frame_rate, each = frames(delivery)
     if (count := len(samples.codes) * each) > MOST_FRAMES:
         raise FormatError(
@@ -120,6 +125,7 @@ WAV = Format(
     write=wav_write,
     columns=wav_columns,
     facts=wav_facts,
+    fits=wav_fits,
 )
 
 TDMS = Format(

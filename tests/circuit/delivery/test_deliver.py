@@ -108,7 +108,8 @@ def test_a_slew_rate_holds_the_command_back() -> None:
         (DAC, 10_000.0, 999.0, 10_000.0),  # nearly as many samples as are computed
         (changed(DAC, "update rate", "Hz", low=250.0, high=1e4), 100.0, 8.0, 300.0),  # each is played three times
         (Device.load("ni-analogue-output"), 10_000.0, 8.0, 5_000.0),
-        (Device.load("dc-coupled-audio"), 100.0, 8.0, 48_000.0),
+        (Device.load("dc-coupled-audio"), 100.0, 8.0, 100.0),  # each is held for 480 frames
+        (Device.load("dc-coupled-audio"), 50_000.0, 8.0, 25_000.0),
         (Device.load("pwm-h-bridge-10"), 100.0, 8.0, 15_625 / 157),
         (changed(GENERATOR, "buffer length", "samples", low=8, high=16384), 100.0, 600.0, 25.0),  # all that it holds
     ],

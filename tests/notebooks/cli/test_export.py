@@ -131,8 +131,9 @@ def test_what_is_not_reached_or_lossy_unless_forced(
 @pytest.mark.parametrize(
     ("name", "more", "words"),
     [
-        ("warm-step.csv", (), "warm-step.csv already exists and was kept; --force replaces the folder"),
-        ("cool-step.json", ("--force",), "cool-step.json was not written by an export, since no sidecar lists it"),
+        ("old.json", (), "old.json already exists and was kept; --force replaces the folder"),
+        ("warm-step.csv", (), "was not written by an export, since no sidecar lists it, and is kept; move it away, or"),
+        ("cool-step.csv", ("--force",), "cool-step.csv was not written by an export, since no sidecar lists it"),
     ],
 )
 def test_a_file_in_the_way_is_reported_before_anything_is_simulated(
@@ -141,11 +142,11 @@ def test_a_file_in_the_way_is_reported_before_anything_is_simulated(
     monkeypatch.setattr("thermicon.circuit.delivery.export.prepare_set", None)
     out = two.parent / "out"
     out.mkdir()
-    (out / name).write_text("{}")
+    (out / name).write_text(content := '{"thermicon": "1", "file": "warm-step.wav"}')
     said = cli("export", two, "--to", "csv", "-o", out, *more)
     assert said.exit_code == 1
     assert words in said.stderr
-    assert (out / name).read_text() == "{}"
+    assert (out / name).read_text() == content
 
 
 def test_another_icon_that_the_device_cannot_play_is_left_out_of_the_comparison(cli: Cli, tmp_path: Path) -> None:

@@ -103,6 +103,7 @@ def test_without_nptdms_the_cure_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
     ("name", "device", "scale", "words"),
     [
         ("wav", {"dc_coupled": False}, {}, r"wav: dc-coupled-audio is not said to be DC-coupled .* every held level"),
+        ("psychopy", {"dc_coupled": True}, {}, r"nor a study plays on a sound interface such as ni-.* use .*qst-tcs2"),
         ("wav", {"levels": "waveform"}, {}, "wav has no levels of its own; dc-coupled-audio sets its levels by the"),
         ("c-array", {}, {"lowest": -32769}, r"c-array holds int16_t; dac-12 has codes of -32769 … 2047"),
         ("c-array", {}, {"lowest": 0, "highest": 65535}, r"c-array holds int16_t; dac-12 has codes of 0 … 65535"),
@@ -115,7 +116,8 @@ def test_what_a_format_cannot_hold_is_refused(
     found, samples = played(name)
     wide = replace(samples, scale=replace(samples.scale, **scale))  # type: ignore[arg-type]
     with pytest.raises(FormatError, match=words):
-        load_format(name).write(replace(found, device=replace(found.device, **device), played=wide))  # type: ignore[arg-type]
+        load_format(name).check(other := replace(found.device, **device))  # type: ignore[arg-type]
+        load_format(name).write(replace(found, device=other, played=wide))
 
 
 class TestWav:

@@ -203,7 +203,7 @@ class TestVolts:
         ni.stops(words, reading)
         assert ni.daq.out[-1] == 0.0
 
-    @pytest.mark.parametrize(("name", "rate"), [("ni-analogue-output", 20_000.0), ("dc-coupled-audio", 48_000.0)])
+    @pytest.mark.parametrize(("name", "rate"), [("ni-analogue-output", 20_000.0), ("dac-16", 48_000.0)])
     def test_above_10_000_updates_a_second_the_judged_drive_is_put_out(
         self, bench: Callable[..., Bench], name: str, rate: float
     ) -> None:
