@@ -30,7 +30,7 @@ DETECTED = (
 def detail_blocks(made: SetReport) -> list[Block]:
     """The scores of the set, its worst pair, and what they depend on."""
     ranking, worst = made.ranking, made.ranking.worst
-    scores = [*number_points(made), *norm_points(ranking), *carried_points(ranking)]
+    scores = [*number_points(made), *memory_points(ranking), *carried_points(ranking)]
     found: list[Block] = [Heading("The set"), Bullets(tuple(scores))]
     if worst is not None:
         confused = f"confused in {percent(worst.confused_probability)} of trials, the mean of both ways"
@@ -119,16 +119,16 @@ def _range(ranking: Ranking, interval: str) -> str:
     return "" if ranking.people == 1 else f"; middle 95 % of people: {interval}"
 
 
-def norm_points(ranking: Ranking) -> Iterator[str]:
+def memory_points(ranking: Ranking) -> Iterator[str]:
     """Yield whether the order would change with the other form of memory; nothing for one icon."""
-    for norm, share in ranking.norm_sensitivity.items() if ranking.pairs else ():
-        changes = ranking.norm_changes[norm]
+    for form, share in ranking.memory_sensitivity.items() if ranking.pairs else ():
+        changes = ranking.memory_changes[form]
         if not changes:
             order = "same order"
         else:
             more = f" ({count_of(len(changes) - 1, 'more change')} of order)" if len(changes) > 1 else ""
-            order = f"{changes[0][1]} before {changes[0][0]}{more}"
-        yield f"with the {norm} distance: {percent(share)} correct, {order}"
+            order = f"{changes[0][1]} then ranks before {changes[0][0]}{more}"
+        yield f"with the other form of memory ({form}): {percent(share)} correct, {order}"
 
 
 def carried_points(ranking: Ranking) -> Iterator[str]:

@@ -26,7 +26,7 @@ from ..identification.measures import information_bits, plugin_bits, proportion_
 from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond, run_end_s
 from ..identification.skin_alone import named_by_skin
 from ..kernels.parallel import in_order
-from ..observer.channels import CHANNELS, USUAL_NORM, Variable, receptor_column
+from ..observer.channels import CHANNELS, USUAL_MEMORY, Variable, receptor_column
 from ..observer.observer import Observer
 from ..observer.people import People, draw_people
 from ..ranking.batches import EXPERIMENTS
@@ -59,7 +59,7 @@ class Identified:
     @property
     def said(self) -> str:
         """The conditions of its predictions."""
-        return f"named from memory, {self.probability.shape[0]} people, {USUAL_NORM}"
+        return f"named from memory, {self.probability.shape[0]} people, {USUAL_MEMORY}"
 
     def predicted(
         self, experiment: str, quantity: str, unit: str, score: Score, *, conditions: str = "", top: float = math.inf
@@ -102,7 +102,7 @@ class Shown:
 
         def confusions(at: ReceptorTemperatures, observer: Observer, people: People, samples: int) -> Array:
             felt = respond(at, people, observer, detection=False)
-            probability: Array = identify(felt, USUAL_NORM, people, observer, self.seed, samples)[1].probability
+            probability: Array = identify(felt, USUAL_MEMORY, people, observer, self.seed, samples)[1].probability
             return probability
 
         whole = confusions(self.played(variable), nominal, self.crowd, SAMPLES)
@@ -212,7 +212,7 @@ def wave_shapes(found: Identified, alike: Sequence[Likeness]) -> tuple[Predicted
     """How alike the shapes are at the skin, and whether they are each other's main confusions."""
     places = {shape: [found.labels.index(wave_name(shape, *group)) for group in GROUPS] for shape in SHAPES}
     made, skin = [], "skin temperature over the swing, largest of four groups"
-    said = f"named from memory, {len(found.labels)} icons, {found.probability.shape[0]} people, {USUAL_NORM}"
+    said = f"named from memory, {len(found.labels)} icons, {found.probability.shape[0]} people, {USUAL_MEMORY}"
     for pair in PAIRS:
         both = " and ".join(pair)
         largest = max(one.largest for one in alike if one.pair == pair)

@@ -15,7 +15,7 @@ from ..experiments.laboratory import PEOPLE, SEED, Laboratory
 from ..experiments.measure import Setting
 from ..identification.laboratory_draws import DrawnLaboratories
 from ..kernels.parallel import in_order
-from ..observer.channels import CHANNELS, USUAL_NORM, Variable
+from ..observer.channels import CHANNELS, USUAL_MEMORY, Variable
 from ..observer.draws import PosteriorDraws
 from ..observer.mechanisms.age import YOUNG_YEARS
 from ..observer.observer import Observer, variant_records
@@ -119,7 +119,7 @@ def plausible_laboratories(n: int, seed: int, variable: Variable) -> DrawnLabora
     """Laboratories of n draws of the posterior of a variant."""
     posterior, records = PosteriorDraws.load(variable=variable), variant_records(variable)
     return DrawnLaboratories.of(
-        replace(ObserverModel.load(), records=records, posterior=posterior), USUAL_NORM, n, seed
+        replace(ObserverModel.load(), records=records, posterior=posterior), USUAL_MEMORY, n, seed
     )
 
 

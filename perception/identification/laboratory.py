@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
-from ..observer.channels import Norm
+from ..observer.channels import MemoryForm
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from .depths import rungs
@@ -111,7 +111,7 @@ def new_laboratory(
     end_s: float,
     crowd: People,
     predicted: Nominal,
-    norm: Norm,
+    form: MemoryForm,
     *,
     tracking: str | None = None,
     model: ObserverModel | None = None,
@@ -135,10 +135,10 @@ def new_laboratory(
         RATE_HZ / (EVERY if count <= MANY else 2 * EVERY), tracking,
     )  # fmt: skip
     each = laboratory_draws(
-        lambda _: few, persons, norm, own, draws=draws, seed=seed, task=task, resampled=True, step=step
+        lambda _: few, persons, form, own, draws=draws, seed=seed, task=task, resampled=True, step=step
     )
     # Means over all the people of the nominal observer: their sample belongs to the draw.
-    centre = scored(few, persons, own.nominal, norm, seed, task, np.arange(len(persons)))
+    centre = scored(few, persons, own.nominal, form, seed, task, np.arange(len(persons)))
     tops = (1.0, math.log2(count), 1.0, math.inf, math.inf, 1.0)
     moved: dict[str, Any] = {}
     for name, own_values, top in zip(Nominal.__slots__, centre[:6], tops, strict=True):

@@ -15,7 +15,7 @@ from thermicon.circuit.inputs import InputError
 from thermicon.circuit.records import RecordError, RecordTable
 from thermicon.icons.model.arguments import checked
 
-from .channels import CHANNELS, USUAL_NORM, VARIABLES, Norm
+from .channels import CHANNELS, USUAL_MEMORY, VARIABLES, MemoryForm
 from .draws import PosteriorDraws
 from .observer import DATA, Observer, read_records, variant_records
 from .people import People, draw_people
@@ -128,7 +128,7 @@ class CrowdWords(TypedDict, total=False):
     people: int
     seed: int
     tracking: Tracking | None
-    memory: Norm
+    memory: MemoryForm
     observer: AnyObserver | None
 
 
@@ -167,7 +167,7 @@ class Crowd:
     people: int = 200
     seed: int = 0
     tracking: Tracking | None = None
-    memory: Norm = USUAL_NORM
+    memory: MemoryForm = USUAL_MEMORY
     observer: AnyObserver | None = None
 
     def __post_init__(self) -> None:

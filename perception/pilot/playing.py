@@ -88,7 +88,7 @@ class Stage:
             observer, people = prior.observer_and_people(values[k], int(some.seed[k]), self.people)
             people = replace(people, contact_resistance=self.skins[0], outer_layer=self.skins[1])
             felt = respond(self.played, people, observer, detection=False)
-            named = identify(felt, prior.norm, people, observer, int(some.seed[k]), SAMPLES)[1].probability
+            named = identify(felt, prior.form, people, observer, int(some.seed[k]), SAMPLES)[1].probability
             return np.maximum(named, LEAST_PROBABILITY).astype(np.float32)
 
         found = np.empty((len(some), self.people, len(self.icons), len(self.icons)), dtype=np.float32)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ..identification.carry_over import CarryOver
     from ..identification.map import PerceptualMap
     from ..identification.task import Task
-    from ..observer.observer import Norm
+    from ..observer.observer import MemoryForm
     from .batches import Job, PooledResult
 
 
@@ -117,15 +117,15 @@ class Ranking(Drawn, Tabled):
         return self.job.tracking or ", ".join(sorted({usual_tracking(icon) for icon in self.job.icons}))
 
     @property
-    def memory(self) -> Norm:
+    def memory(self) -> MemoryForm:
         """How icons are remembered."""
-        return self.job.norm
+        return self.job.memory
 
     @property
     def crowd(self) -> Crowd:
         """Who feels and remembers the icons."""
         job = self.job
-        return Crowd(job.people, job.seed, job.tracking, job.norm, self.model)
+        return Crowd(job.people, job.seed, job.tracking, job.memory, self.model)
 
     @property
     def task(self) -> Task:
@@ -220,13 +220,13 @@ class Ranking(Drawn, Tabled):
         return self.felt.middle
 
     @property
-    def norm_sensitivity(self) -> dict[str, float]:
-        """Proportion correct of the set by the other norm, under its name."""
-        return {self.job.other_norm: float(self.felt.other_correct.mean())}
+    def memory_sensitivity(self) -> dict[str, float]:
+        """Proportion correct of the set by the other form of memory, under its name."""
+        return {self.job.other_memory: float(self.felt.other_correct.mean())}
 
     @property
-    def norm_changes(self) -> dict[str, tuple[tuple[str, str], ...]]:
-        """By the other norm, the pairs of icons whose order changes: the first is better here, the second there.
+    def memory_changes(self) -> dict[str, tuple[tuple[str, str], ...]]:
+        """Pairs of icons in another order with the other form of memory: the first is better here, the second there.
 
         Differences must exceed one percentage point in both, since smaller ones are within the sampling error.
         """
@@ -236,7 +236,7 @@ class Ranking(Drawn, Tabled):
             for i, j in permutations(range(len(own)), 2)
             if own[i] > own[j] + PERCENTAGE_POINT and other[j] > other[i] + PERCENTAGE_POINT
         )
-        return {self.job.other_norm: changed}
+        return {self.job.other_memory: changed}
 
     @property
     def rules_score(self) -> float | None:

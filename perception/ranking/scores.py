@@ -18,7 +18,7 @@ from thermicon.icons.number_text import decimals, significant
 
 from ..criteria import DISTINGUISHABLE_DPRIME, FELT_FROM
 from ..identification.episodes import Episodes, remembered
-from ..observer.observer import Channel, Norm, Observer
+from ..observer.observer import Channel, MemoryForm, Observer
 from ..sensation.coverage import outside_data
 from ..sensation.detection import channel_name
 from ..sensation.features import attack_K_per_s, delay_s, peak_change_K
@@ -102,7 +102,7 @@ class Compared:
     percepts: Sequence[Percept]
     episodes: Episodes
     observer: Observer
-    norm: Norm
+    memory: MemoryForm
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,9 @@ class PairScore:
         """What separates the two, or fails to, in sentences."""
         held, (i, j) = self.compared, self.places
         felt = held.percepts[i], held.percepts[j]
-        return pair_reasons(held.traces[i], held.traces[j], felt, held.observer, held.norm, held.episodes, self.places)
+        return pair_reasons(
+            held.traces[i], held.traces[j], felt, held.observer, held.memory, held.episodes, self.places
+        )
 
     @cached_property
     def rules(self) -> tuple[RuleResult, ...]:
@@ -214,13 +216,13 @@ def assemble(
     durations_s: Sequence[float],
     percepts: Sequence[Percept],
     all_: PooledResult,
-    norm: Norm,
+    memory: MemoryForm,
     observer: Observer,
 ) -> tuple[tuple[IconScore, ...], tuple[PairScore, ...]]:
     """Scores of all icons and of all pairs, in file order."""
     middle, pooled, detected = all_.middle, all_.pooled, all_.detected
     onsets, channels = all_.detection.onset_s, all_.detection.channel
-    compared = Compared(traces, percepts, remembered(percepts, observer), observer, norm)
+    compared = Compared(traces, percepts, remembered(percepts, observer), observer, memory)
     pairs = [
         PairScore(
             a=icons[i].name,

@@ -61,7 +61,7 @@ def load_measurements() -> Mapping[str, tuple[str, ...]]:
 
 
 def base_name(constant: str) -> str:
-    """A constant without the norm that its value belongs to.
+    """A constant without the form of memory that its value belongs to.
 
     >>> base_name("memory noise (episodes)")
     'memory noise'

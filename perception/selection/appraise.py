@@ -24,7 +24,7 @@ from ..identification.population import (
     run_end_s,
 )
 from ..identification.task import USUAL, Task
-from ..observer.channels import USUAL_NORM
+from ..observer.channels import USUAL_MEMORY
 from ..observer.observer import Observer
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..observer.people import People
@@ -115,7 +115,7 @@ def population_dprime(icons: Sequence[Icon], rig: Rig, crowd: People) -> tuple[A
     """Pairwise d′ (people, icons, icons) from memory, by the shipped observer, and durations (s) of the icons."""
     nominal = Observer.load()
     felt, durations = population_response(icons, rig, crowd, observer=nominal)
-    return memory_dprime(felt, USUAL_NORM, crowd.memory, nominal, USUAL), durations
+    return memory_dprime(felt, USUAL_MEMORY, crowd.memory, nominal, USUAL), durations
 
 
 def population_response(

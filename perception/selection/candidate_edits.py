@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..identification.population import run_end_s
-from ..observer.observer import Norm, Observer
+from ..observer.observer import MemoryForm, Observer
 from ..ranking.scores import objection
 from .pool import POOL_HZ, Pool
 
@@ -142,7 +142,7 @@ class Screening:
     now: Array
     pair: tuple[int, int]
     wanted: float
-    norm: Norm
+    memory: MemoryForm
     observer: Observer
 
 
@@ -254,7 +254,7 @@ def _good(of: Screening, tried: Sequence[CandidateEdit], target: float, vain: Va
     end_s = max(of.kept.end_s, run_end_s([longest], POOL_HZ))
     felt = Pool.of([one.icon for one in tried], of.kept.rig, of.observer, end_s=end_s)
     good = []
-    for trace, one, row in zip(felt.traces, tried, felt.dprimes(of.kept, of.norm, of.observer), strict=True):
+    for trace, one, row in zip(felt.traces, tried, felt.dprimes(of.kept, of.memory, of.observer), strict=True):
         other = of.pair[1] if one.place == of.pair[0] else of.pair[0]
         fallen = worse(of.now[one.place], row, of.wanted)
         fallen[[one.place, other]] = False

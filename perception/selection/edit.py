@@ -142,8 +142,8 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
 
     (i, j), job, before, nominal = pair, ranking.job, ranking.d_prime, ranking.model.nominal
     kept = Pool.of(job.icons, job.rig, nominal)
-    now = kept.dprimes(kept, job.norm, nominal)
-    screening, vain = Screening(kept, now, pair, wanted, job.norm, nominal), Vain()
+    now = kept.dprimes(kept, job.memory, nominal)
+    screening, vain = Screening(kept, now, pair, wanted, job.memory, nominal), Vain()
     crowd = ranking.model.people(job.people, job.seed)
     target = wanted * now[i, j] / before[i, j] if now[i, j] > 0 and before[i, j] > 0 else wanted
     largest, confirmed = LARGEST, 0.0
@@ -193,7 +193,7 @@ def _with_people(
 
     def medians(icons: Sequence[Icon], task: Task) -> Array:
         felt, _ = population_response(icons, job.rig, crowd, job.tracking, end_s=end_s, observer=nominal)
-        return np.asarray(np.median(memory_dprime(felt, job.norm, crowd.memory, nominal, task), axis=0))
+        return np.asarray(np.median(memory_dprime(felt, job.memory, crowd.memory, nominal, task), axis=0))
 
     i, j = screening.pair
     if job.task.gap_s is None:

@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..criteria import FELT_FROM
 from ..identification.episodes import dprimes_from_memory
 from ..identification.population import run_end_s
-from ..observer.observer import Norm, Observer
+from ..observer.observer import MemoryForm, Observer
 from ..ranking.scores import energy_J, objection
 from ..sensation.detection import detect
 from ..sensation.percept import perceive_many
@@ -94,12 +94,12 @@ class Pool:
         """Energy (J) that each icon takes of the driver; NaN on a thermode."""
         return np.array([energy_J(*each) for each in zip(self.traces, self.durations_s.tolist(), strict=True)])
 
-    def dprimes(self, kept: Pool, norm: Norm, observer: Observer) -> Array:
+    def dprimes(self, kept: Pool, memory: MemoryForm, observer: Observer) -> Array:
         """d′ from memory (these, kept) of the nominal person, on the longer clock."""
         n = max(self.cold.shape[1], kept.cold.shape[1])
         one, other = ((_held(pool.cold, n), _held(pool.warm, n)) for pool in (self, kept))
         names = [[trace.icon or "" for trace in pool.traces] for pool in (self, kept)]
-        return dprimes_from_memory(one, other, self.dt_s, observer, norm, (names[0], names[1]))
+        return dprimes_from_memory(one, other, self.dt_s, observer, memory, (names[0], names[1]))
 
     def limits(self, most_s: float | None, most_J: float | None) -> Totals:
         """The totals that a choice must keep, as costs of every icon."""
