@@ -26,7 +26,7 @@ CURE_OF: dict[str, Cure] = {
 class Before:
     """What was played before a play, with a pause in s between plays.
 
-    `plays`: the same drive for ever (`cycle`) or `once`, another one once (`another`) or for ever (`others`), or drives
+    `plays`: the same drive repeated (`cycle`) or `once`, another one once (`another`) or repeated (`others`), or drives
     in any order, between the `warm` and the `cold` bound of which the play begins; or just `any` before it.
     """
 

@@ -150,7 +150,7 @@ class Plant(ABC, Generic[Played, States]):
 
     @property
     def drift_C(self) -> float | None:
-        """Skin of the rig as given in °C without current for ever; None where there is no current."""
+        """Steady skin temperature in °C of the rig as given, without current; None where there is no current."""
         return None
 
 

@@ -120,7 +120,7 @@ class Library(Mapping[str, IconSet]):
         return tuple(found)
 
     def to_frame(self) -> "pd.DataFrame":
-        """Return a table with a row a set and the columns name, icons, title, intent, source."""
+        """Return a table with one row per set and the columns name, icons, title, intent, source."""
         import pandas as pd
 
         return pd.DataFrame(list(self.entries))

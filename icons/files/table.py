@@ -115,7 +115,7 @@ class Table:
             theirs = self.names.renamed.get(name, (name,))[0]
             return f"write {found[1]}; units belong in the names of the columns, as in {theirs} [{found[2]}]"
         alone = len(self.header) > 1 and set(self.rows[row]) <= {"", cell}
-        return "remove this line, which is no row of the table" if cell and alone else ""
+        return "remove this line, which is not a row of the table" if cell and alone else ""
 
 
 def as_number(cell: str, mark: str = ",") -> float:

@@ -91,7 +91,7 @@ def checked(function: F) -> F:
         for name, value in (*values, *given.items()):
             if name not in hints and name in given:
                 now = f"is called {RENAMED[name]}" if name in RENAMED else did_you_mean(name, hints)
-                raise InputError(f"{place}: {name} {'' if name in RENAMED else 'is no argument; '}{now}")
+                raise InputError(f"{place}: {name} {'' if name in RENAMED else 'is not an argument; '}{now}")
             if not _fits(value, hints.get(name, Any)):
                 raise InputError(f"{place}: {name} takes {_words(hints[name])}, {_refused(name, value, hints[name])}")
 

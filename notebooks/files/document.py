@@ -130,7 +130,7 @@ class Document:
     def aim(self, goal: str) -> None:
         """Write another goal into the text, as a step that can be undone; an empty one takes the line away.
 
-        Raises GoalError for what is no goal.
+        Raises GoalError for a text that is not a goal.
         """
         from thermicon.perception import Goal
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 PLAN_HEAD = (
     "Half widths of the 95 % intervals to expect from one log of the shipped calibration drive, with 10 independent "
     "readings per second and noise of 20 mK and 5 mV. Logged are D the display, V the module's voltage, H the hot "
-    "plate, S the skin; in brackets what is no better than assumed anyway."
+    "plate, S the skin; in brackets what is not better than assumed."
 )
 LETTERS = {"display_C": "D", "voltage_V": "V", "hot_plate_C": "H", "skin_C": "S"}
 USUAL_DIGITS, MOST_DIGITS = 4, 7

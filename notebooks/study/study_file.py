@@ -175,7 +175,7 @@ def study_hash(study: Study, contents: Mapping[str, str]) -> str:
 
 
 def _faults(study: Study) -> list[str]:
-    """What is wrong between keys, a sentence each with the cure."""
+    """Contradictions between keys, each in a sentence with the cure."""
     people, stimuli, threshold, run = study.participants, study.stimuli, study.threshold, study.run
     labels = Counter(label.casefold() for label in people.labels or ())
     keys = Counter((run.start_key, run.stop_key, run.abort_key))

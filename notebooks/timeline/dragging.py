@@ -150,7 +150,7 @@ class _Move:
         return float(found[self.index].level), float(found[self.index].time_s)
 
     def check(self, size: float, took: float) -> None:
-        """Refuse what is no statement: no time, no size."""
+        """Refuse an invalid statement: no time, no size."""
         now, grip = self.corner, self.grip
         if grip.time is not None and took <= 0:
             raise _Refused(self.too_early())

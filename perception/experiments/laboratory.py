@@ -1,7 +1,7 @@
 """A laboratory with one set of constants: drives of its stimuli, sensitivities of its people, answers.
 
-Its people and trials have the same quasi-random numbers for every set of constants: a change of a constant then changes
-a prediction smoothly, which a search for a maximum needs.
+The quasi-random numbers of people and trials are the same for every set of constants, so that predictions change
+smoothly with the constants, as a search for a maximum needs.
 """
 
 import math

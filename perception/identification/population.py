@@ -137,7 +137,7 @@ class PopulationResponse:
 def respond(
     played: ReceptorTemperatures, crowd: People, observer: Observer, *, detection: bool = True, times: bool = False
 ) -> PopulationResponse:
-    """Episodes of every icon for every person, and whether it is reported (`detection`), and when (`times`)."""
+    """Episodes of every icon for every person, optionally with detection and with the times of its reports."""
     cold, warm, dt = _sensations(played, crowd, observer)
     found = _detection(cold, warm, dt, played.site, crowd, observer, times) if detection else None
     return PopulationResponse(Episodes.of(cold, warm, dt, observer, played.names), found)

@@ -135,19 +135,19 @@ class CrowdWords(TypedDict, total=False):
 @checked
 @dataclass(frozen=True, slots=True)
 class Crowd:
-    """Who feels icons and remembers them: what `rank` and its kin take as `crowd`, or each word of it by its name.
+    """Virtual people who feel and remember icons: the argument `crowd` of `rank` and others, or its fields by name.
 
     Attributes
     ----------
     people
         Number of virtual people; `plan` and `observed` have the participants of every laboratory instead.
     seed
-        What they and all noise are drawn from.
+        Seed of the people and of all noise.
     tracking
-        What is the same for all of them: `replay` (the current), `display` (the temperature of the display) or `ideal`
-        (that of the skin); None: what suits the control of each icon.
+        What every virtual person receives: `replay` (the same current), `display` (the same display temperature) or
+        `ideal` (the same skin temperature); None: by the control of each icon.
     memory
-        How icons are remembered: `episodes` (compared in logarithms) or `naming` (as ratings, each trial named
+        Form of memory: `episodes` (compared in logarithms) or `naming` (as ratings, each trial named
         directly).
     observer
         Another observer with its posterior, or the file of one; None: the shipped one. One without draws gives no

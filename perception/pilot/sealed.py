@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 WHAT, MOST_MB = "sealed prediction", 200
 LEAST = 1e-6
-"""Probability that counts in place of 0, so that no single answer decides for ever."""
+"""Probability that counts in place of 0, so that no single answer decides alone."""
 
 
 class SealedError(InputError):

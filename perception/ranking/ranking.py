@@ -118,7 +118,7 @@ class Ranking(Drawn, Tabled):
 
     @property
     def memory(self) -> MemoryForm:
-        """How icons are remembered."""
+        """Form of memory: `episodes` or `naming`."""
         return self.job.memory
 
     @property

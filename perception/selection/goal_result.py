@@ -179,7 +179,7 @@ def judge_goal(goal: Goal | str, found: Ranking | SetOutcome, choice: Choice | N
     Raises
     ------
     GoalError
-        For a text that is no goal, and for a share of people where ranking or choice have no draws.
+        For a text that is not a goal, and for a share of people where ranking or choice have no draws.
 
     Examples
     --------

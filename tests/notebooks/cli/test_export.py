@@ -47,7 +47,7 @@ def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Pa
     for words in (
         *("safety is milder: contact resistance ±0 % instead of ±30 %", "cool-step: 8.01 s at 100 Hz on dac-16"),
         *("safety green in 3 scenarios", "warning: cool-step: dac-16 plays −1 … 1 A (−10 … 10 V through "),
-        *(f"wrote 2 drives with their sidecars into {out}: cool-step.json", "to play: put out each row's command"),
+        *(f"wrote 2 drives with their sidecars into {out}: cool-step.json", "to play: output each row's value"),
     ):
         assert words in said.stderr
     assert said.stderr.splitlines()[-1].startswith("safety is a calculation, not a medical or ethical clearance")
