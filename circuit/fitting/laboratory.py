@@ -78,7 +78,7 @@ class Expected:
 def plan(
     rig: Rig, free: Sequence[str] | None = None, *, offset_K: float = OFFSET_SD_K, fixed_skin: bool = False
 ) -> tuple[Expected, ...]:
-    """How well each choice of sensors, the least first, will identify keys by the calibration drive of a module.
+    """Predicted precision of keys for each choice of sensors, the fewest first, with a module's calibration drive.
 
     From the curvature of the sum of squares, with ten rows a second of white noise: what the rig lacks adds to it.
     """

@@ -102,7 +102,7 @@ def overlay(trace: Trace, log: Log, *, shift_s: float | None = None) -> Overlay:
 
 
 def best_shift_s(reference_s: Array, reference: Array, time_s: Array, values: Array) -> tuple[float, float]:
-    """What to add to `time_s` so that values fit a reference best, and the correlation; 0 where nothing changes."""
+    """Time to add to `time_s` for the best fit to a reference, with the correlation; 0 where nothing changes."""
     there, other = np.isfinite(reference), np.isfinite(values)
     if not (there.any() and other.any()):
         return 0.0, 0.0

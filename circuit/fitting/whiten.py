@@ -29,7 +29,7 @@ OTHER_STEP = 0.02
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shared:
-    """What rows of a run err alike: the rows (n,) of each part among the run's, and their covariance (n, n)."""
+    """Common errors of a run's rows: the rows (n,) of each part among the run's, and their covariance (n, n)."""
 
     rows: tuple[Index, ...]
     covariance: tuple[Array, ...]
@@ -51,7 +51,7 @@ class Shared:
 
 
 def shared(rig: Rig, run: Run, times: Sequence[Array]) -> Shared | None:
-    """What rows of a run at `times` of each channel, on the drive's clock, err alike; None where the drive is known."""
+    """Common errors of rows at `times` of each channel, on the drive's clock; None where the drive is known."""
     if run.unknown is None or not run.unknown.any():
         return None
     responses = _responses(rig, run)

@@ -30,7 +30,7 @@ class Stopped(RuntimeError):
 
 
 class Numbers(NamedTuple):
-    """What a guard keeps to, in °C, s and K; the command that tests the polarity is in the unit of the line."""
+    """Limits of a guard in °C, s and K; the command that tests the polarity is in the unit of the line."""
 
     low_C: float
     high_C: float

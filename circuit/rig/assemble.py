@@ -13,7 +13,7 @@ from .skin import STRATUM_CORNEUM, Layer, Skin, usual_depth_mm
 
 @dataclass(frozen=True, slots=True)
 class HeatPump:
-    """What warms and cools a display by a current: module, the origin of its numbers, heat sink, driver."""
+    """The source of a display's heat by a current: module, the origin of its numbers, heat sink, driver."""
 
     module: Peltier
     origin: ModuleOrigin

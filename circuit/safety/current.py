@@ -227,7 +227,7 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         tallies: Sequence[list[Tally]],
         shortest_s: float | None,
     ) -> tuple[float | None, list[tuple[Demands, tuple[Check, ...]]]]:
-        """What prevents a host that stops, a driver that is stuck, and faults of a first play."""
+        """Demands against a host that stops, a driver that is stuck, and faults of a first play."""
         from .demanded import demanded
 
         return demanded(self, [single for (single,) in singles], recovered_s, repeating, shortest_s)

@@ -200,7 +200,7 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         tallies: Sequence[list[Tally]],
         shortest_s: float | None,
     ) -> tuple[float | None, list[tuple[Demands, tuple[Check, ...]]]]:
-        """What prevents set-points that hang, and a loop that runs to the end of its range or stays anywhere in it."""
+        """Demands against set-points that hang, and a loop that runs to an end of its range or stays within it."""
         pause_s = LONGEST_PAUSE_S if shortest_s is None else shortest_s
         beginning = Beginning.of(repeating, pause_s, max(recovered_s))
         starts = cache(beginning.after)
@@ -273,7 +273,7 @@ class _Faults:
         return hang, stuck
 
     def demands(self, ends_C: Span, pause_s: float | None, rest_s: float | None, at_once: Sequence[Check]) -> Demands:
-        """What the device itself must prevent, with a cut-off at two temperatures."""
+        """Demands on the device itself, with a cut-off at two temperatures."""
         watchdog, react = (min(time for _, time in each) for each in (self.hangs, self.stuck))
         watchdog = watchdog if watchdog >= ENDING_S else math.floor(100.0 * MARGIN * watchdog) / 100.0
         cut = CutOff(*ends_C, math.floor(1000.0 * MARGIN * react) / 1000.0)

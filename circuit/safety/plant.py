@@ -36,7 +36,7 @@ Stretch = tuple[Array, Array]
 
 
 class GatePlay(Protocol):
-    """What is played: currents, or temperatures of a display."""
+    """A play for the gate: currents, or temperatures of a display."""
 
     @property
     def way(self) -> str:
@@ -101,7 +101,7 @@ class Plant(ABC, Generic[Played, States]):
 
     @abstractmethod
     def let_go(self, play: Played, state: States) -> Iterable[tuple[Future, ...]]:
-        """What follows a play in each of the endings."""
+        """Continuations of a play by each of the endings."""
 
     @abstractmethod
     def cycle(self, play: Played, pause_s: float) -> States:

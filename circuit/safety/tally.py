@@ -199,7 +199,7 @@ class Tally:
         return tuple(dict.fromkeys(self._worst()[self._present & self._rules.hard].tolist()))
 
     def beyond(self) -> Array:
-        """How far each rule is exceeded in each lane (rules, lanes), as `checks.beyond` of its check."""
+        """Excess over each rule in each lane (rules, lanes), as `checks.beyond` of its check."""
         nothing = np.array([check.value for check in map(self._nothing, self.limits.rules)])
         limit = np.where(self._present[:, np.newaxis], self._limits(), self._rules.limit[:, np.newaxis])
         value = np.where(self._present[:, np.newaxis], self._value, nothing[:, np.newaxis])

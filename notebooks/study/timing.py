@@ -42,7 +42,7 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class Landing:
-    """How long the hand rests on the display before a block, and what is then left of its own temperature.
+    """The rest of the hand on the display before a block, and what is then left of its own temperature.
 
     `left_K` is of skin and receptors at the end, `left_at_10_s_K` after 10 s, for skin that arrives `from_K` off.
     """

@@ -135,7 +135,7 @@ class _Move:
         return size, took
 
     def replay(self, size: float, took: float) -> tuple[float, float]:
-        """Where the corner would be with a statement of another size and time."""
+        """The place of the corner with a statement of another size and time."""
         self.check(size, took)
         if self.corner.path is None:
             return float(self.corner.level), float(self.corner.time_s)

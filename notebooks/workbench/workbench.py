@@ -157,7 +157,7 @@ class Workbench:
 
     @property
     def percept(self) -> Percept | None:
-        """What is felt of it."""
+        """The percept of the icon."""
         drawing = self._design.scene.drawing
         return None if drawing is None else drawing.percept
 

@@ -43,7 +43,7 @@ STEEP = f"display step of {STEEP_K:g} K at {STEEP_K_PER_S:g} K/s, thenar, percep
 
 @lru_cache(maxsize=2048)
 def measured(setting: Setting, condition: Condition, person: Observer) -> float:
-    """What one person gives in a task, in the unit of the condition; inf where the largest change is not felt."""
+    """A person's result in a task, in the unit of the condition; inf where the largest change is not felt."""
     value = float(np.exp(logs_of(laboratory_of(person, setting), setting, condition, SIZES_K)[0].mean()))
     return value if condition.method not in ADAPTIVE or value < 0.999 * SIZES_K[-1] else np.inf
 

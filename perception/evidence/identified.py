@@ -84,7 +84,7 @@ class Shown:
     baseline: Array
 
     def played(self, variable: Variable) -> ReceptorTemperatures:
-        """What the receptors of every person go through, as the nominal observer of a variant has them."""
+        """Receptor temperatures of every person, with the nominal observer of a variant."""
         cold, warm = (receptor_column(variable, channel) for channel in CHANNELS)
         how = self.rig, Observer.load(variable=variable), self.end_s, RATE_HZ, None
         return ReceptorTemperatures.simulated(self.icons, self.crowd, *how, (cold, warm))
@@ -174,7 +174,7 @@ PAIRS = tuple(combinations(SHAPES, 2))
 
 @dataclass(frozen=True, slots=True)
 class Likeness:
-    """How alike two shapes of a group are at the skin: differences over the swing, largest and root mean square."""
+    """Similarity of two shapes at the skin: differences over the swing, largest and root mean square."""
 
     group: str
     pair: tuple[str, str]
@@ -209,7 +209,7 @@ def likeness(rig: Rig) -> tuple[Likeness, ...]:
 
 
 def wave_shapes(found: Identified, alike: Sequence[Likeness]) -> tuple[Predicted, ...]:
-    """How alike the shapes are at the skin, and whether they are each other's main confusions."""
+    """Similarity of shapes at the skin, and whether they are each other's main confusions."""
     places = {shape: [found.labels.index(wave_name(shape, *group)) for group in GROUPS] for shape in SHAPES}
     made, skin = [], "skin temperature over the swing, largest of four groups"
     said = f"named from memory, {len(found.labels)} icons, {found.probability.shape[0]} people, {USUAL_MEMORY}"

@@ -62,7 +62,7 @@ def laboratory_of(
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """What an experiment is asked for, how a subject answers (inf: not), and what skin temperature alone predicts."""
+    """A question to subjects, their answers (inf: not), and the answer from skin temperature alone."""
 
     quantity: str
     channel: str
@@ -104,7 +104,7 @@ def quantile_felt(ordered: Array, share: float) -> float | None:
 
 
 def interval_of(each: Sequence[float]) -> tuple[float | None, float | None]:
-    """What encloses 95 % of answers (inf: not felt); an end that lies among those not felt is None.
+    """The 95 % interval of answers (inf: not felt); an end among those not felt is None.
 
     >>> interval_of((1.0, 2.0, 3.0)), interval_of(())
     ((1.05, 2.95), (None, None))

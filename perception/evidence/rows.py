@@ -52,7 +52,7 @@ class Statistic(BaseModel):
 
 
 class Experiment(BaseModel):
-    """Where an experiment was published, under which licence, and how it asked."""
+    """The publication of an experiment, its licence, its method."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 

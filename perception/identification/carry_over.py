@@ -33,7 +33,7 @@ PEOPLE = 32
 
 @dataclass(frozen=True, slots=True)
 class CarryOver:
-    """How far every icon (column) feels from itself alone after every other (row): `apart` (forms, icons, icons)."""
+    """d′ of every icon (column) after every other (row) from itself alone: `apart` (forms, icons, icons)."""
 
     names: tuple[str, ...]
     gap_s: float

@@ -141,7 +141,7 @@ def detected_as_delivered(
 
 
 def _change(met_K: Array, channel: Channel, designed: Trace, delivered: Trace, at_s: Array) -> Array:
-    """What the device changes (people, icons, n_time), K: for the nominal person, in proportion to each `met_K`."""
+    """The device's change (people, icons, n_time), K: the nominal person's, in proportion to each `met_K`."""
     before, after = (np.interp(at_s, t.time_s, getattr(t, f"{channel}_receptor_C")) for t in (designed, delivered))
     icon = before - before[0]
     size = float(icon @ icon)

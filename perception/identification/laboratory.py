@@ -71,7 +71,7 @@ class NewLaboratory:
         }
 
     def ahead_of(self, other: NewLaboratory) -> float:
-        """How often a person names these icons better than the other's, on the same draws; a tie counts half."""
+        """The share of draws in which a person names these icons better than the other's; a tie counts half."""
         mine, theirs = self.each.persons_correct[..., None], other.each.persons_correct[:, None]
         if mine.shape[1] == theirs.shape[2]:
             mine, theirs = self.each.persons_correct, other.each.persons_correct
@@ -95,7 +95,7 @@ class NewLaboratory:
 
 @dataclass(frozen=True, slots=True)
 class Nominal:
-    """What intervals are laid about: the prediction for many people at the nominal constants."""
+    """The centre of intervals: the prediction for many people at the nominal constants."""
 
     proportion_correct: float
     information_bits: float

@@ -33,7 +33,7 @@ def check_variable(variable: str) -> Variable:
 
 
 def source_of(variable: Variable) -> str:
-    """How the parameter file ends the name of a number that depends on the variant; nothing for the default."""
+    """The ending of a number's name in the parameter file for a variant; empty for the default."""
     return "" if variable == "temperature" else " from heat flow"
 
 

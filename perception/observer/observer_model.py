@@ -109,7 +109,7 @@ class ObserverModel:
 
     @property
     def key(self) -> str:
-        """What results depend on, for hashes; empty for the shipped model, whose data belong to the program."""
+        """The identity of the model for hashes; empty for the shipped one, whose data belong to the program."""
         own = "" if self.name == SHIPPED else self.digest
         return own if self.age_years is None else f"{own} people of {self.age_years:g} years"
 

@@ -40,7 +40,7 @@ Data: TypeAlias = "Answered | MeasuredValues"
 
 @dataclass(frozen=True, slots=True)
 class Conditioned:
-    """What data make of the laboratories `before`, which were weighed; `after` is a sample of equal weights.
+    """The weighed laboratories `before` data, and `after`, a sample of equal weights.
 
     `effective` is the effective sample size of the weights, `effective_after` how many independent draws stand behind
     `after`, `rounds` how often fresh laboratories were simulated (0: the weights sufficed).

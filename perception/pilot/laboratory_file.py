@@ -62,7 +62,7 @@ def laboratory_draws(
 
 
 def how_resampled(laboratories: int, effective: float, rounds: int) -> str:
-    """How laboratories were resampled, in a few words."""
+    """The way of resampling laboratories, in a few words."""
     if not rounds:
         return f"by weights from {laboratories} laboratories, effective sample size {effective:.0f}"
     times = "1 round" if rounds == 1 else f"{rounds} rounds"

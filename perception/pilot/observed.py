@@ -40,7 +40,7 @@ F = TypeVar("F", Fit, MeasurementFit)
 
 @dataclass(frozen=True, slots=True)
 class Observed(Drawn, Tabled, Generic[D, F]):
-    """What participants answered or what was measured, how it fits the prediction, and what it makes of the prediction.
+    """Answers or measurements of participants, their fit to the prediction, and the prediction after them.
 
     Attributes
     ----------
@@ -74,7 +74,7 @@ class Observed(Drawn, Tabled, Generic[D, F]):
 
     @property
     def provenance(self) -> tuple[str, ...]:
-        """What the conditioned draws were made from, a line each."""
+        """The origin of the conditioned draws, one line each."""
         found = self.conditioned
         how = "weights" if not found.rounds else f"{found.rounds} rounds of fresh laboratories"
         return (

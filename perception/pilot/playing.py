@@ -81,7 +81,7 @@ class Stage:
         return self.played.people
 
     def confusions(self, some: Laboratories, step: Callable[[], None] | None = None) -> Confusions:
-        """How the people of each laboratory name the icons; `step` is called after each."""
+        """Confusions of the icons by the people of each laboratory; `step` is called after each."""
         values, prior = self.prior.values(some), self.prior
 
         def one(k: int) -> Small:

@@ -50,7 +50,7 @@ class Laboratories:
 
 
 class LaboratoryPrior:
-    """What laboratories are drawn from: draws of the posterior, intervals of memory, and the spread of offsets.
+    """The prior of laboratories: draws of the posterior, intervals of memory, and the spread of offsets.
 
     Memory that the draws have themselves is kept with their constants, on the scale of its shipped interval.
     """

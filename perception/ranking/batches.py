@@ -157,7 +157,7 @@ def run(job: Job, number: int) -> BatchResult:
 
 @dataclass(frozen=True, slots=True)
 class FeltResult:
-    """What people feel of m icons: `detection` (m,) by one drawn at random, `pairs` (people, m(m − 1)/2) of d′."""
+    """Percepts of m icons: `detection` (m,) by one person drawn at random, `pairs` (people, m(m − 1)/2) of d′."""
 
     detection: Detection
     pairs: Array
@@ -214,7 +214,7 @@ class PooledResult(FeltResult):
 
 
 def felt_by_people(job: Job, first: int, step: Callable[[], None]) -> Iterator[FeltResult]:
-    """What about as many people as `first` feel, where they are fewer batches than all, and then what all feel.
+    """Percepts of about as many people as `first`, where they are fewer batches than all, and then of all.
 
     Icons are not named, which takes most of the time of many icons; `step` is called after each batch.
     """

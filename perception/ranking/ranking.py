@@ -111,7 +111,7 @@ class Ranking(Drawn, Tabled):
 
     @property
     def tracking(self) -> str:
-        """What every person gets: `replay`, `display` or `ideal`."""
+        """What every virtual person receives: `replay`, `display` or `ideal`."""
         from thermicon.circuit.solver.batch import usual_tracking
 
         return self.job.tracking or ", ".join(sorted({usual_tracking(icon) for icon in self.job.icons}))
@@ -123,7 +123,7 @@ class Ranking(Drawn, Tabled):
 
     @property
     def crowd(self) -> Crowd:
-        """Who feels and remembers the icons."""
+        """The people who feel and remember the icons."""
         job = self.job
         return Crowd(job.people, job.seed, job.tracking, job.memory, self.model)
 
@@ -179,7 +179,7 @@ class Ranking(Drawn, Tabled):
 
     @property
     def assumptions(self) -> Assumptions:
-        """What the result depends on most, where people and draws show it."""
+        """The most influential assumptions, where people and draws show them."""
         crowd, elsewhere = self.model.people(self.people, self.seed), self.new_laboratory
         each = None if elsewhere is None else elsewhere.each
         return assumptions_of(self.felt.correct, crowd, self.job.rig, self.model.nominal, each)
@@ -245,7 +245,7 @@ class Ranking(Drawn, Tabled):
 
     @property
     def rules_disagree(self) -> tuple[dict[str, Any], ...]:
-        """Where rules and model judge differently."""
+        """Disagreements of rules and model."""
         return disagreements(self.icons, self.pairs)
 
     def rows(self) -> list[dict[str, Any]]:

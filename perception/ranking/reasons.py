@@ -121,7 +121,7 @@ def pair_reasons(
     episodes: Episodes,
     places: tuple[int, int],
 ) -> tuple[str, ...]:
-    """What separates the two icons, or fails to: what carries the distance, then direction, peaks, rates, onsets.
+    """Reasons for the distance of two icons: what carries it, then direction, peaks, rates, onsets.
 
     Of two icons that move the receptors alike there is one sentence, which says so. `memory` is the form with which the
     two are distinguished from memory; `episodes` are those of the nominal person, with the two icons at `places`.
@@ -139,7 +139,7 @@ def pair_reasons(
 def _carries(
     names: tuple[str, str], episodes: Episodes, places: tuple[int, int], observer: Observer, memory: MemoryForm
 ) -> str:
-    """What distinguishes two of the first person's icons from memory: the feature that carries most of it."""
+    """The feature that carries most of the first person's distance between two icons."""
     shares = distance_shares(episodes, places[0], episodes, places[1], observer, memory)
     total = math.sqrt(sum(shares.values()))
     one, other = (episodes.listed(0, place) for place in places)

@@ -96,7 +96,7 @@ class IconScore:
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """What reasons and rules of pairs are read off: the icons on the nominal rig, as a nominal person feels them."""
+    """The input of reasons and rules of pairs: icons on the nominal rig, as a nominal person feels them."""
 
     traces: Sequence[Trace]
     percepts: Sequence[Percept]
@@ -124,7 +124,7 @@ class PairScore:
 
     @cached_property
     def why(self) -> tuple[str, ...]:
-        """What separates the two, or fails to, in sentences."""
+        """Reasons for the distance of the two, in sentences."""
         held, (i, j) = self.compared, self.places
         felt = held.percepts[i], held.percepts[j]
         return pair_reasons(

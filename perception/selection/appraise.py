@@ -128,7 +128,7 @@ def population_response(
     end_s: float | None = None,
     observer: Observer,
 ) -> tuple[PopulationResponse, Array]:
-    """What every person feels of every icon, and durations (s) of the icons."""
+    """Every person's response to every icon, and durations (s) of the icons."""
     from thermicon.circuit.solver.simulate import duration_s
 
     durations = np.array([duration_s(icon, rig) for icon in icons])

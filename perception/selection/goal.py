@@ -41,7 +41,7 @@ class GoalError(InputError):
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """What a part may be about: its comparison, units as factors to the unit of its value, bounds, and an example."""
+    """The quantity of a goal's part: its comparison, units as factors to the unit of its value, bounds, an example."""
 
     comparison: str
     units: Mapping[str, float]
@@ -114,7 +114,7 @@ class GoalPart:
 @checked
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What is wanted of a set.
+    """A goal for a set of icons.
 
     Attributes
     ----------

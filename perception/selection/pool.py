@@ -124,7 +124,7 @@ class Pool:
         return tuple(icon.name for icon, trace in found if objection(trace) is None and objection(trace, soft=True))
 
     def objections(self, goal: Goal | None, observer: Observer, must: Sequence[str] = ()) -> tuple[str | None, ...]:
-        """What speaks against each icon: it cannot be played, or misses what a goal asks of single icons.
+        """Objections to each icon: it cannot be played, or misses what a goal asks of single icons.
 
         Unless the goal says how often an icon is to be detected, the nominal person detects it in half of the trials,
         but for those that `must` be in.
@@ -188,7 +188,7 @@ def _held(psi: Array, n: int) -> Array:
 
 
 def _shape_of(icon: Icon, rig: Rig) -> object:
-    """What two icons share that play alike: control and corner points."""
+    """The common property of icons that play alike: control and corner points."""
     from thermicon.circuit.solver.inverse import baseline_C
     from thermicon.circuit.solver.steady import steady_state
 

@@ -34,7 +34,7 @@ SHRINK, FINEST = 0.85, 0.005
 
 @dataclass(frozen=True, slots=True)
 class Evaluator:
-    """How pools and sets are scored: by the nominal person unless there is a `crowd`.
+    """Scores of pools and sets: by the nominal person unless there is a `crowd`.
 
     `goal` says what is asked of single icons and of totals.
     """
@@ -64,7 +64,7 @@ class Evaluator:
         return pool, memory_dprime(felt, self.memory, self.crowd.memory, self.observer, USUAL)
 
     def namings(self, d_prime: Array, pool: Pool) -> SubsetIdentification:
-        """Who is named what, for the objectives that count errors."""
+        """The namings of every person, for the objectives that count errors."""
         lapse = np.array([self.observer.lapse]) if self.crowd is None else self.crowd.lapse
         return SubsetIdentification.of(d_prime, lapse, pool.durations_s, self.seed)
 
