@@ -107,7 +107,7 @@ def into_nowhere(stream: TextIO) -> None:
     os.close(nowhere)
 
 
-class Missing(typer.BadParameter):
+class MissingArgument(typer.BadParameter):
     """An argument or option that is needed here, though another form of the command does without it."""
 
     def format_message(self) -> str:

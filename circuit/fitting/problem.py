@@ -20,7 +20,7 @@ from ..rig.skin import layer_spreads
 from .forward import Prediction, predict
 from .keys import FitError, FitKey, value_of
 from .runs import DISPLAY, Channel, Run
-from .whiten import Shared, shared
+from .whiten import CommonErrors, shared
 
 OFFSET_SD_K = 0.1
 """Standard deviation of a thermistor's zero: interchangeable ones are sold as ±0.1 to ±0.2 K."""
@@ -82,7 +82,7 @@ class FitProblem:
     fixed_skin: bool
     unknowns: tuple[Unknown, ...]
     _kept: dict[bytes, tuple[Prediction, ...]] = field(init=False, default_factory=dict)
-    _shared: list[Shared | None] = field(init=False, default_factory=list)
+    _shared: list[CommonErrors | None] = field(init=False, default_factory=list)
 
     @staticmethod
     def of(

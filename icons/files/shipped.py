@@ -93,7 +93,7 @@ def _kind(mode: int) -> FileKind | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Shipped:
+class ShippedSet:
     """The library's entry of a set; members of families count, and are not made."""
 
     name: str
@@ -110,13 +110,13 @@ class Library(Mapping[str, IconSet]):
     sets: tuple[tuple[str, IconSet], ...]
 
     @property
-    def entries(self) -> tuple[Shipped, ...]:
+    def entries(self) -> tuple[ShippedSet, ...]:
         """Name, number of icons, title, intent and source of every set."""
         found = []
         for name, icons in self.sets:
             means = dict.fromkeys(filter(None, (entry.metadata.means for entry in icons.entries)))
             source = "; ".join(filter(None, (icons.metadata.by, icons.metadata.doi))) or "not stated"
-            found.append(Shipped(name, len(icons), icons.title, icons.metadata.means or "; ".join(means), source))
+            found.append(ShippedSet(name, len(icons), icons.title, icons.metadata.means or "; ".join(means), source))
         return tuple(found)
 
     def to_frame(self) -> "pd.DataFrame":

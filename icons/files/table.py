@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from ..model.arguments import InputError
-from .column_names import Named, meant, named, unit_of
+from .column_names import NamedHeader, meant, named, unit_of
 from .table_text import table_text
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ class Table:
     lines: tuple[int, ...]
     fault: Fault
     mark: str
-    names: Named
+    names: NamedHeader
     notes: tuple[str, ...]
     lost: Mapping[str, str]
 

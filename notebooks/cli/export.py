@@ -17,7 +17,7 @@ from thermicon.icons.model.arguments import advised
 from thermicon.icons.number_text import number
 
 from ..files.exporting import felt_in, others
-from ..messages import BAD_INPUT, DEFAULT_RIG, OPTIONS, REFUSED, Missing, note, progress_bar, usage
+from ..messages import BAD_INPUT, DEFAULT_RIG, OPTIONS, REFUSED, MissingArgument, note, progress_bar, usage
 from ..report.blocks import grid
 from ..report.gate_words import CAUTION, gate_words, spread_text, steps_of, warning_lines
 from ..report.terminal import show
@@ -72,11 +72,11 @@ def export_command(
         verify_folder(verify)
         return
     if file is None:
-        raise Missing("argument 'FILE'")
+        raise MissingArgument("argument 'FILE'")
     if to is None:
-        raise Missing("option '--to'")
+        raise MissingArgument("option '--to'")
     if folder is None:
-        raise Missing("option '-o' / '--output'")
+        raise MissingArgument("option '-o' / '--output'")
     from thermicon.circuit import export
     from thermicon.circuit.delivery.formats import load_format
     from thermicon.circuit.delivery.pack import check_names

@@ -98,14 +98,14 @@ class Amount:
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class WrittenStatement:
     """A statement where it stands in a text: its numbers by keyword, and the word for its direction, if it has one."""
 
     amounts: Mapping[str, Amount]
     direction: tuple[int, int] | None
 
 
-def written(text: str, span: tuple[int, int]) -> Written:
+def written(text: str, span: tuple[int, int]) -> WrittenStatement:
     """Find the numbers of the statement that begins at a line and column (from 1) of a text.
 
     >>> written("cue 1\\nicon dip { cool by 6 °C at 3 °C/s }", (2, 12)).amounts["by"].number
@@ -118,7 +118,7 @@ def written(text: str, span: tuple[int, int]) -> Written:
     for match in _AMOUNT.finditer(text, begin, end):
         amounts.setdefault(match[1], Amount(*match.span(2), match[2], match[3]))
     word = _WORD.match(text, begin, end)
-    return Written(amounts, word.span(2) if word else None)
+    return WrittenStatement(amounts, word.span(2) if word else None)
 
 
 def keyword_of(leaf: Leaf, field: str) -> str:

@@ -28,7 +28,7 @@ GOAL = re.compile(r"^# goal:[ \t]*(.*?)[ \t]*(?:\n|\Z)", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)
-class Edited:
+class HistoryStep:
     """What a step of history holds."""
 
     text: str
@@ -42,9 +42,9 @@ class History:
     Verbs return new histories. At most 200 steps are kept; the oldest are forgotten.
     """
 
-    now: Edited
-    past: tuple[Edited, ...] = ()
-    future: tuple[Edited, ...] = ()
+    now: HistoryStep
+    past: tuple[HistoryStep, ...] = ()
+    future: tuple[HistoryStep, ...] = ()
     last_s: float | None = field(default=None)
     kind: Kind = field(default="other")
 
@@ -78,7 +78,7 @@ class History:
             return self
         return History(self.future[-1], (*self.past, self.now), self.future[:-1])
 
-    def _with(self, new: Edited, kind: Kind, now_s: float | None, goes_on: bool) -> History:
+    def _with(self, new: HistoryStep, kind: Kind, now_s: float | None, goes_on: bool) -> History:
         if new == self.now:
             return replace(self, last_s=now_s, kind=kind)
         past = self.past if goes_on and self.past else (*self.past, self.now)[-MOST_STEPS:]
@@ -97,7 +97,7 @@ class Document:
         self.path = path
         self.name = name if path is None else path.name
         self.saved = text
-        self.history = History(Edited(text))
+        self.history = History(HistoryStep(text))
         self.keeps = keeps
         self._overwrites = self._crlf = False
         self._stamp: str | None = None

@@ -41,7 +41,7 @@ Score = Callable[[Array], float]
 
 
 @dataclass(frozen=True, slots=True)
-class Identified:
+class VariantConfusions:
     """Confusions of a variant: of every person, of `few` (the nominal observer, each laboratory), by skin alone."""
 
     variable: Variable
@@ -73,7 +73,7 @@ class Identified:
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class ShownSet:
     """A set that is shown to many people; `identify` asks one variant of the observer."""
 
     icons: tuple[Icon, ...]
@@ -89,7 +89,7 @@ class Shown:
         how = self.rig, Observer.load(variable=variable), self.end_s, RATE_HZ, None
         return ReceptorTemperatures.simulated(self.icons, self.crowd, *how, (cold, warm))
 
-    def identify(self, variable: Variable, draws: int) -> Identified:
+    def identify(self, variable: Variable, draws: int) -> VariantConfusions:
         """Confusions of one variant from memory."""
         labels, rig = tuple(icon.name for icon in self.icons), self.rig
         few = self.crowd.part(0, people_for_intervals(len(labels)))
@@ -115,10 +115,10 @@ class Shown:
         each = list(in_order(drawn, range(draws)))
         kept = np.stack(each) if each else np.zeros((0, *whole.shape))
         alone = confusions(thin, nominal, few, FEW_SAMPLES)
-        return Identified(variable, labels, whole, alone, kept, self.baseline)
+        return VariantConfusions(variable, labels, whole, alone, kept, self.baseline)
 
 
-def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> Shown:
+def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> ShownSet:
     """Icons to play to virtual people, each on their own skin and contact, as `rank` does."""
     from thermicon.circuit import simulate_many
     from thermicon.circuit.solver.simulate import duration_s
@@ -128,7 +128,7 @@ def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> Shown:
     end = run_end_s(durations)
     batch = simulate_many(members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, probes=[SKIN])
     rows = [round(each * RATE_HZ) + 1 for each in durations]
-    return Shown(members, rig, end, crowd, seed, named_by_skin(batch[SKIN], rows, crowd, seed))
+    return ShownSet(members, rig, end, crowd, seed, named_by_skin(batch[SKIN], rows, crowd, seed))
 
 
 def correct(probability: Array) -> float:
@@ -141,7 +141,7 @@ def correct_of(places: Sequence[int], probability: Array) -> float:
     return float(np.mean([probability[:, k, k].mean() for k in places]))
 
 
-def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...]:
+def six_icons(found: VariantConfusions, trials: int, seed: int) -> tuple[Predicted, ...]:
     """Proportion correct, information (exact, and as the experiment would report it), each icon, spread of people."""
     most = math.log2(len(found.labels))
 
@@ -208,7 +208,7 @@ def likeness(rig: Rig) -> tuple[Likeness, ...]:
     return tuple(found)
 
 
-def wave_shapes(found: Identified, alike: Sequence[Likeness]) -> tuple[Predicted, ...]:
+def wave_shapes(found: VariantConfusions, alike: Sequence[Likeness]) -> tuple[Predicted, ...]:
     """Similarity of shapes at the skin, and whether they are each other's main confusions."""
     places = {shape: [found.labels.index(wave_name(shape, *group)) for group in GROUPS] for shape in SHAPES}
     made, skin = [], "skin temperature over the swing, largest of four groups"

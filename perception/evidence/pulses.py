@@ -20,7 +20,7 @@ from ..ranking.rank import rank
 from ..ranking.ranking import Ranking
 from ..selection.choose import choose
 from ..selection.request import Selection
-from .identified import Shown, correct, show
+from .identified import ShownSet, correct, show
 from .predicted import DRAWS, Predicted
 
 RIG, COUNTS, SETS = "tcs2", (22, 16), 100
@@ -41,7 +41,7 @@ def best_pulses(count: int, seed: int) -> tuple[Icon, ...]:
 
 
 @lru_cache(maxsize=4)
-def _shown(count: int | None, people: int, seed: int) -> Shown:
+def _shown(count: int | None, people: int, seed: int) -> ShownSet:
     """The best sequences, or all, as both variants are asked of them."""
     return show(_ranked(seed).job.icons if count is None else best_pulses(count, seed), Rig.load(RIG), people, seed)
 

@@ -95,7 +95,7 @@ class IconScore:
 
 
 @dataclass(frozen=True, slots=True)
-class Compared:
+class PairInputs:
     """The input of reasons and rules of pairs: icons on the nominal rig, as a nominal person feels them."""
 
     traces: Sequence[Trace]
@@ -120,7 +120,7 @@ class PairScore:
     d_prime: float
     confused_probability: float
     places: tuple[int, int] = field(repr=False)
-    compared: Compared = field(repr=False, compare=False)
+    compared: PairInputs = field(repr=False, compare=False)
 
     @cached_property
     def why(self) -> tuple[str, ...]:
@@ -222,7 +222,7 @@ def assemble(
     """Scores of all icons and of all pairs, in file order."""
     middle, pooled, detected = all_.middle, all_.pooled, all_.detected
     onsets, channels = all_.detection.onset_s, all_.detection.channel
-    compared = Compared(traces, percepts, remembered(percepts, observer), observer, memory)
+    compared = PairInputs(traces, percepts, remembered(percepts, observer), observer, memory)
     pairs = [
         PairScore(
             a=icons[i].name,

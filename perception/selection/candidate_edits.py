@@ -147,7 +147,7 @@ class Screening:
 
 
 @dataclass(slots=True)
-class Rejected:
+class Rejections:
     """Results of rejected edits: the largest d′ of a playable one, and whether any edit made another pair worse."""
 
     closest: float = 0.0
@@ -159,7 +159,7 @@ def worse(before: Array, after: Array, wanted: float) -> NDArray[np.bool_]:
     return (after < before - TOLERANCE) & (after < FAR * wanted)
 
 
-def offers(of: Screening, target: float, largest: float, rejected: Rejected) -> list[CandidateEdit]:
+def offers(of: Screening, target: float, largest: float, rejected: Rejections) -> list[CandidateEdit]:
     """Edits that bring the pair to a target d′ for the nominal person, the cheapest first."""
     from thermicon.circuit.solver.inverse import baseline_C
     from thermicon.icons.model.icon import all_played
@@ -246,7 +246,7 @@ def _valid(
     return [CandidateEdit(place, new, old, line, cost, added, way, step, np.empty(0))]
 
 
-def _good(of: Screening, tried: Sequence[CandidateEdit], target: float, rejected: Rejected) -> list[CandidateEdit]:
+def _good(of: Screening, tried: Sequence[CandidateEdit], target: float, rejected: Rejections) -> list[CandidateEdit]:
     """Those that part the pair for the nominal person, are safe and reached, and leave the others apart."""
     if not tried:
         return []

@@ -24,7 +24,7 @@ from ..identification.population import memory_dprime, run_end_s
 from ..identification.task import USUAL, Task
 from ..observer.people import People
 from .appraise import appraise, population_response
-from .candidate_edits import CandidateEdit, Rejected, Screening, offers, worse
+from .candidate_edits import CandidateEdit, Rejections, Screening, offers, worse
 from .pool import POOL_HZ, Pool
 
 if TYPE_CHECKING:
@@ -143,7 +143,7 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
     (i, j), job, before, nominal = pair, ranking.job, ranking.d_prime, ranking.model.nominal
     kept = Pool.of(job.icons, job.rig, nominal)
     now = kept.dprimes(kept, job.memory, nominal)
-    screening, rejected = Screening(kept, now, pair, wanted, job.memory, nominal), Rejected()
+    screening, rejected = Screening(kept, now, pair, wanted, job.memory, nominal), Rejections()
     crowd = ranking.model.people(job.people, job.seed)
     target = wanted * now[i, j] / before[i, j] if now[i, j] > 0 and before[i, j] > 0 else wanted
     largest, confirmed = LARGEST, 0.0
