@@ -1,4 +1,4 @@
-"""``thermicon check``: every error in some cue files, or one line per file; ``--fix`` formats them."""
+"""``thermicon check``: the errors of cue files, or one line per file."""
 
 from __future__ import annotations
 

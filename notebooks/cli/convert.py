@@ -1,4 +1,4 @@
-"""``thermicon convert``: icons as cue text or JSON, and recordings as icons."""
+"""``thermicon convert``: icons as cue text or JSON, recordings as icons."""
 
 from __future__ import annotations
 

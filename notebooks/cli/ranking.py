@@ -1,4 +1,4 @@
-"""``thermicon rank``: predicted detection, confusions and information of one set, as table, JSON and figures."""
+"""``thermicon rank``: predicted detection, confusions, information of one set."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``thermicon sweep``: one key of the rig over a range, and every number of a run at each value."""
+"""``thermicon sweep``: the numbers of a run at each value of one key of the rig."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The text of a goal, and of the choice of the best few icons of a set."""
+"""The text about a goal or about the choice of the best few icons."""
 
 from __future__ import annotations
 

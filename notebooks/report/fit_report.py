@@ -1,4 +1,4 @@
-"""What ``thermicon fit`` says: parameters, residuals, doubts, and the table of a plan."""
+"""The report of ``thermicon fit``: parameters, residuals, doubts, the table of a plan."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What to do next about a set: the command that helps with what is in the way, or the reason why none does."""
+"""The next step for a set: the command that helps most, or the reason why none does."""
 
 from __future__ import annotations
 

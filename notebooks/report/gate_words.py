@@ -1,4 +1,4 @@
-"""What the gate says of icons beyond their colour: how they may be repeated, and what the hardware must provide.
+"""The gate's findings in a report: permitted repetition, demands on the hardware.
 
 What holds for all icons of an export is said once, and of what differs the strictest, with the icon that it is of.
 """

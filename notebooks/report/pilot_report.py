@@ -1,4 +1,4 @@
-"""What ``thermicon pilot`` says: data beside their prediction, and the prediction before and after."""
+"""The report of ``thermicon pilot``: data beside their prediction, the prediction before and after."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``thermicon pilot`` says of a plan: sizes of experiments, and what each gives."""
+"""The report of a plan for ``thermicon pilot``: sizes of experiments with their precision."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What stands behind a ranking: notes, its numbers with intervals, the worst pair with its reasons, and assumptions."""
+"""The details of a ranking: notes, intervals, reasons for the worst pair, assumptions."""
 
 from __future__ import annotations
 

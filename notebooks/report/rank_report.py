@@ -1,4 +1,4 @@
-"""A ranking as blocks: what a user asks first in twenty lines, and the rest on demand."""
+"""A ranking as blocks: first the twenty lines that a user asks first, the rest on demand."""
 
 from __future__ import annotations
 

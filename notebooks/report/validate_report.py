@@ -1,4 +1,4 @@
-"""What ``thermicon validate`` says: targets, and how well rows are predicted without their experiment."""
+"""The report of ``thermicon validate``: targets, predictions of rows without their own experiment."""
 
 from __future__ import annotations
 
