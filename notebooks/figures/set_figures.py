@@ -67,10 +67,10 @@ def observed_figure(found: Observed[Any, Any], look: Look = SCREEN) -> Any:
     """Draw observed beside predicted answers, and per cent correct before and after; of measurements that alone."""
     from matplotlib.figure import Figure
 
-    from thermicon.perception.pilot.conditioning import AnswerData
+    from thermicon.perception.pilot.conditioning import Namings
     from thermicon.perception.plots import draw_heat
 
-    if not isinstance(found.data, AnswerData):
+    if not isinstance(found.data, Namings):
         return found.plot().figure
     names, counts = list(found.data.trials.icons), found.data.trials.pooled
     observed = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1.0)

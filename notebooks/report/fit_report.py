@@ -10,7 +10,7 @@ from .blocks import Block, Grid, Text, grid
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
-    from thermicon.circuit.fitting.laboratory import ExpectedIntervals
+    from thermicon.circuit.fitting.laboratory import Forecast
     from thermicon.circuit.fitting.rig_fit import RigFit
 
 PLAN_HEAD = (
@@ -31,7 +31,7 @@ def fit_report(fitted: RigFit, before: Rig) -> list[Block]:
     return [parameter_table(fitted), residual_table(fitted), *said]
 
 
-def plan_report(expected: Sequence[ExpectedIntervals]) -> list[Block]:
+def plan_report(expected: Sequence[Forecast]) -> list[Block]:
     """Report how well each choice of sensors will identify the keys: a row per key, a column per choice."""
     from thermicon.circuit.fitting.identify import width_text
     from thermicon.circuit.rig.faults import unit_of

@@ -11,7 +11,7 @@ from thermicon.icons.number_text import percent, percent_span, signed
 from .blocks import Block, Bullets, Grid, Heading, Text, grid, printed_unit
 
 if TYPE_CHECKING:
-    from thermicon.perception.pilot.conditioning import AnswerData, MeasuredValues
+    from thermicon.perception.pilot.conditioning import MeasuredValues, Namings
     from thermicon.perception.pilot.observed import Observed
     from thermicon.perception.pilot.prediction import Fit, MeasurementFit
     from thermicon.perception.pilot.sealed import SealedScores
@@ -56,10 +56,10 @@ def opened_report(found: SealedScores) -> list[Block]:
 
 def observed_report(found: Observed[Any, Any], files: Sequence[str], last: str = "") -> list[Block]:
     """Report what was observed, how it fits, what the predictions of all sets become, and a last word."""
-    from thermicon.perception.pilot.conditioning import AnswerData
+    from thermicon.perception.pilot.conditioning import Namings
 
     title = found.predictions[0].before.title
-    told = answered_blocks(found) if isinstance(found.data, AnswerData) else measured_blocks(found)
+    told = answered_blocks(found) if isinstance(found.data, Namings) else measured_blocks(found)
     return [
         *([Heading(title, 1)] if title else []),
         *told,
@@ -86,9 +86,9 @@ def sets_table(found: Observed[Any, Any], files: Sequence[str]) -> Grid:
 
 def draws_sentences(found: Observed[Any, Any]) -> list[str]:
     """How many draws carry the result, and which constants moved."""
-    from thermicon.perception.pilot.conditioning import AnswerData
+    from thermicon.perception.pilot.conditioning import Namings
 
-    own, people, answered = found.conditioned, found.predictions[0].after.people, isinstance(found.data, AnswerData)
+    own, people, answered = found.conditioned, found.predictions[0].after.people, isinstance(found.data, Namings)
     carried = f"effective sample size {own.effective:.0f} of {len(own.before)} draws"
     if own.rounds:
         rounds = "1 round" if own.rounds == 1 else f"{own.rounds} rounds"
@@ -169,13 +169,13 @@ def _three(ends: tuple[float, float, float]) -> str:
     return f"{middle} ({low} to {high})"
 
 
-def answered_blocks(found: Observed[AnswerData, Fit]) -> list[Block]:
+def answered_blocks(found: Observed[Namings, Fit]) -> list[Block]:
     """One row per participant and one for all, what the answers do not say, and how they fit the prediction."""
     said = "\n".join(observed_sentences(found.data))
     return [people_table(found.data), Text(said), Text("\n".join(fit_sentences(found))), *pairs(found.fit)]
 
 
-def people_table(data: AnswerData) -> Grid:
+def people_table(data: Namings) -> Grid:
     """One row per participant and one for all: trials, per cent correct, bits."""
     rows = [_row(score) for score in data.each[:MOST_PEOPLE]]
     if (more := len(data.each) - MOST_PEOPLE) > 0:
@@ -191,7 +191,7 @@ def _row(score: AnswerScore) -> list[str]:
     return [score.who, str(score.trials), *correct, f"{score.information_bits:.2f}", str(score.unanswered)]
 
 
-def observed_sentences(data: AnswerData) -> list[str]:
+def observed_sentences(data: Namings) -> list[str]:
     """Bias of the bits, and what the answers do not cover."""
     pooled, trials = data.pooled, data.trials
     lines = [
@@ -219,7 +219,7 @@ def observed_sentences(data: AnswerData) -> list[str]:
     return lines
 
 
-def fit_sentences(found: Observed[AnswerData, Fit]) -> list[str]:
+def fit_sentences(found: Observed[Namings, Fit]) -> list[str]:
     """The test of fit before and after, and the pairs that were missed."""
     fit, pooled = found.fit, found.data.pooled
     seen = found.data.trials.pooled
@@ -260,7 +260,7 @@ def p_text(p: float) -> str:
     return "under 0.01" if p < 0.01 else f"{p:.2f}"
 
 
-def _verdict(found: Observed[AnswerData, Fit]) -> str:
+def _verdict(found: Observed[Namings, Fit]) -> str:
     if (total := int(found.data.trials.counts.sum())) < LEAST_TRIALS:
         few = "1 answer is too little" if total == 1 else f"{total} answers are too few"
         return f": {few} to judge the model by; {LEAST_TRIALS} or more can"

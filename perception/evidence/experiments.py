@@ -20,7 +20,7 @@ from ..observer.observer import Observer, load_thresholds
 from ..sensation.bench import Bench, Stimulus, Surface, raised_cosine, ramp
 from ..sensation.detection import criterion_of, detect
 from ..sensation.percept import perceive
-from .predicted import DRAWS, Predicted, Question, laboratory_of, predict
+from .predicted import DRAWS, Predicted, Query, laboratory_of, predict
 
 RATES_K_PER_S = (0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3)
 FLAT_K_PER_S = (0.1, 0.2, 0.3)
@@ -71,12 +71,12 @@ def rate_curve(variable: Variable = "temperature", *, draws: int = DRAWS, seed: 
     asked, named = [], {rate: f"threshold at {rate:g} K/s" for rate in RATES_K_PER_S}
     for channel in CHANNELS:
         asked += [
-            Question(name, channel, "K", said, partial(at, channel, rate), noticed_K(channel))
+            Query(name, channel, "K", said, partial(at, channel, rate), noticed_K(channel))
             for rate, name in named.items()
         ]
-        asked.append(Question("largest change over 0.1 to 0.3 K/s", channel, "1", said, partial(change, channel), 0.0))
+        asked.append(Query("largest change over 0.1 to 0.3 K/s", channel, "1", said, partial(change, channel), 0.0))
         asked += [
-            Question(f"{name} over that at 0.1", channel, "1", said, partial(raised, channel, rate), 1.0)
+            Query(f"{name} over that at 0.1", channel, "1", said, partial(raised, channel, rate), 1.0)
             for rate, name in named.items()
             if rate not in FLAT_K_PER_S
         ]
@@ -100,7 +100,7 @@ def limits(
     crowd = laboratory_of(Observer.load(variable=variable), setting, people=people, seed=seed, age_years=years)
     conditions = [_threshold("limits", channel) for channel in CHANNELS]
     asked = [
-        Question("limits threshold", one.channel, "K", said, partial(measured, setting, one), noticed_K(one.channel))
+        Query("limits threshold", one.channel, "K", said, partial(measured, setting, one), noticed_K(one.channel))
         for one in conditions
     ]
     made = []
@@ -123,16 +123,14 @@ def reaction_times(variable: Variable = "temperature", *, draws: int = DRAWS, se
         return float(np.polyfit(np.log(AREAS_CM2), np.log(times), 1)[0])
 
     asked = [
-        Question(f"reaction time at {area:g} cm²", channel, "s", said, partial(at, channel, area))
+        Query(f"reaction time at {area:g} cm²", channel, "s", said, partial(at, channel, area))
         for channel in CHANNELS
         for area in AREAS_CM2
     ]
     asked += [
-        Question("exponent of area", c, "1", f"{said}; over {AREAS_CM2} cm²", partial(exponent, c)) for c in CHANNELS
+        Query("exponent of area", c, "1", f"{said}; over {AREAS_CM2} cm²", partial(exponent, c)) for c in CHANNELS
     ]
-    asked.append(
-        Question("warm over cold", "both", "1", said, lambda o: at("warm", largest, o) / at("cold", largest, o))
-    )
+    asked.append(Query("warm over cold", "both", "1", said, lambda o: at("warm", largest, o) / at("cold", largest, o)))
     return predict("choice reaction time", asked, variable, draws, seed)
 
 
@@ -159,10 +157,10 @@ def peak_lead(variable: Variable = "temperature", *, draws: int = DRAWS, seed: i
         found = perceive(play(channel).traces[0], person)
         return float(np.inf) if found.onset_s is None else found.onset_s - person.decision_s
 
-    asked = [Question("felt peak minus the display's", c, "s", said, partial(lead, "display", c)) for c in CHANNELS]
-    asked += [Question("felt peak minus the skin's", c, "s", said, partial(lead, "skin", c)) for c in CHANNELS]
-    asked += [Question("lag of the felt onset", c, "s", said, partial(onset, _pulse, c)) for c in CHANNELS]
-    asked += [Question("lag of the felt onset", c, "s", STEEP, partial(onset, _steep, c)) for c in CHANNELS]
+    asked = [Query("felt peak minus the display's", c, "s", said, partial(lead, "display", c)) for c in CHANNELS]
+    asked += [Query("felt peak minus the skin's", c, "s", said, partial(lead, "skin", c)) for c in CHANNELS]
+    asked += [Query("lag of the felt onset", c, "s", said, partial(onset, _pulse, c)) for c in CHANNELS]
+    asked += [Query("lag of the felt onset", c, "s", STEEP, partial(onset, _steep, c)) for c in CHANNELS]
     return predict("felt peak", asked, variable, draws, seed)
 
 
@@ -185,7 +183,7 @@ def first_and_return(variable: Variable = "temperature", *, draws: int = DRAWS, 
         after = (warm if channel == "cold" else cold)[round(start / played.dt_s) :]
         return float(detect(after, np.zeros_like(after), played.dt_s, keen).probability)
 
-    asked = [Question("report of the return", c, "proportion", said, partial(returned, c)) for c in CHANNELS]
+    asked = [Query("report of the return", c, "proportion", said, partial(returned, c)) for c in CHANNELS]
     return predict("step and return near threshold", asked, variable, draws, seed)
 
 

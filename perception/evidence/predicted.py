@@ -61,7 +61,7 @@ def laboratory_of(
 
 
 @dataclass(frozen=True, slots=True)
-class Question:
+class Query:
     """A question to subjects, their answers (inf: not), and the answer from skin temperature alone."""
 
     quantity: str
@@ -73,7 +73,7 @@ class Question:
 
 
 def predict(
-    experiment: str, asked: Sequence[Question], variable: Variable, draws: int = DRAWS, seed: int = 0
+    experiment: str, asked: Sequence[Query], variable: Variable, draws: int = DRAWS, seed: int = 0
 ) -> tuple[Predicted, ...]:
     """Answers of the nominal observer, with the interval over `draws` plausible ones (0: none) of a seed."""
 

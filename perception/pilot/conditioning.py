@@ -35,7 +35,7 @@ NEAR_ANSWERS, NEAR_VALUES = 2.0, 25.0
 """Ln L by which a laboratory is less likely than those near the data if it counts half in a fit: those far from the
 data keep the polynomial from bending there, and count for little else."""
 Step = Callable[[], None]
-Data: TypeAlias = "AnswerData | MeasuredValues"
+Data: TypeAlias = "Namings | MeasuredValues"
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +131,7 @@ def systematic(weights: Array, n: int, rng: np.random.Generator) -> NDArray[np.i
 
 
 @dataclass(frozen=True)
-class AnswerData:
+class Namings:
     """Answers to a set, which the people of every laboratory are asked to name as well.
 
     `by_people`: they depend on who the people are. Those who are kept must then be others, and the likelihood of

@@ -20,7 +20,7 @@ from ..experiments.measure import Setting
 from ..kernels.parallel import Progress, step_counter
 from ..observer.draws import PosteriorDraws
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
-from .conditioning import AnswerData, Conditioned, MeasuredValues, condition
+from .conditioning import Conditioned, MeasuredValues, Namings, condition
 from .laboratory_file import laboratory_draws, laboratory_texts
 from .measurements_file import Measurements
 from .playing import Confusions, Stage, laboratories_for, stage
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from thermicon.icons import IconSet
 
 DRAWS, LEAST_DRAWS = 1000, 20
-D = TypeVar("D", AnswerData, MeasuredValues)
+D = TypeVar("D", Namings, MeasuredValues)
 F = TypeVar("F", Fit, MeasurementFit)
 
 
@@ -213,9 +213,7 @@ def observed(
     before, kept = prior.first(number, seed), max(number // 2, 2)
     step = step_counter(progress, (1 + len(others)) * (number + kept))
     main = stage(icons, rig, prior, seed=seed, tracking=crowd.tracking)
-    data: Any = (
-        AnswerData(trials, main) if isinstance(trials, Trials) else MeasuredValues(trials, prior, Setting.of(rig))
-    )
+    data: Any = Namings(trials, main) if isinstance(trials, Trials) else MeasuredValues(trials, prior, Setting.of(rig))
     found: Conditioned = condition(data, before, seed=seed, kept=kept, step=step)
 
     def both(played: Stage) -> tuple[Confusions, Confusions]:

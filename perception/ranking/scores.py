@@ -125,11 +125,9 @@ class PairScore:
     @cached_property
     def why(self) -> tuple[str, ...]:
         """Reasons for the distance of the two, in sentences."""
-        held, (i, j) = self.compared, self.places
-        felt = held.percepts[i], held.percepts[j]
-        return pair_reasons(
-            held.traces[i], held.traces[j], felt, held.observer, held.memory, held.episodes, self.places
-        )
+        of, (i, j) = self.compared, self.places
+        felt = of.percepts[i], of.percepts[j]
+        return pair_reasons(of.traces[i], of.traces[j], felt, of.observer, of.memory, of.episodes, self.places)
 
     @cached_property
     def rules(self) -> tuple[RuleResult, ...]:
