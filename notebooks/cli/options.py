@@ -108,7 +108,7 @@ class Options:
     """A group of options: a frozen dataclass whose fields carry their options."""
 
     def words(self, *, paths: bool = False) -> list[str]:
-        """What repeats the group on a command line: options other than the default; paths as given, or names alone."""
+        """Words that repeat the group on a command line: options but defaults; paths as given, or names alone."""
         own: tuple[Field[Any], ...] = fields(self)  # type: ignore[arg-type]
         words: list[str] = []
         for field in own:
@@ -156,16 +156,16 @@ class RigOptions(Options):
 
 @dataclass(frozen=True)
 class ObserverOptions(Options):
-    """Who feels and remembers icons, and what of them is the same for all people."""
+    """Options about the virtual people who feel and remember icons."""
 
     seed: Seed = 0
     tracking: Annotated[
         Literal["replay", "display", "ideal"] | None,
         typer.Option(
-            help="What all people receive alike: current, display or skin temperature.  [default: by control]"
+            help="What every virtual person receives: same current, display or skin temperature.  [default: by control]"
         ),
     ] = None
-    memory: Annotated[Literal["episodes", "naming"], typer.Option(help="How icons are remembered.")] = "episodes"
+    memory: Annotated[Literal["episodes", "naming"], typer.Option(help="Form of memory.")] = "episodes"
     observer: Annotated[
         Path | None,
         opt(

@@ -51,7 +51,7 @@ class RankedBy(CrowdOptions):
 
     memory: Annotated[
         Literal["episodes", "naming", "rules"],
-        typer.Option("--memory", "--by", help="Form of memory; rules: scores by rules of thumb instead of people."),
+        typer.Option("--memory", "--by", help="Form of memory; rules: rules of thumb instead of virtual people."),
     ] = "episodes"  # type: ignore[assignment]  # one more than other commands know
 
     @property

@@ -46,7 +46,7 @@ def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
     again = "repeated plays" + (", in any order" if len(gates) > 1 else "")
     stuck = stuck_text(gates)
     first = [] if stuck is None else [("a driver stuck at its limit", stuck)]
-    return [*first, (again, repeated_text(gates)), ("the hardware must provide", demands_text(gates))]
+    return [*first, (again, repeated_text(gates)), ("your hardware must provide", demands_text(gates))]
 
 
 def repeated_text(gates: Sequence[Named]) -> str:
@@ -99,10 +99,9 @@ def demands_text(gates: Sequence[Named]) -> str:
         whose = _of(_names(hangs), len(hangs) < len(every))
         parts = [f"a current that cannot hang{whose}, for which no watchdog is quick enough"]
     loop = every[0][1].loop  # of set-points: one for all icons
-    cut_off = f"cut-off at {number(low, 1)} and {number(high, 1)} °C on "
-    cut_off += "the measured display" if loop is None else "a second sensor of the display"
+    sensor = "the measured display" if loop is None else "a second sensor of the display"
     quick = f"within {within:g} s" if within >= QUICKEST_S else "(too slow for a driver stuck at its limit)"
-    parts.append(f"{cut_off} {quick}")
+    parts.append(f"cut-off outside {number(low, 1)} … {number(high, 1)} °C on {sensor} {quick}")
     limits = [one.current_limit_A for _, one in every if one.current_limit_A is not None]
     if limits:
         least, most = max(low for low, _ in limits), min(high for _, high in limits)
@@ -129,7 +128,8 @@ def demands_text(gates: Sequence[Named]) -> str:
         shortest = _strictest(limited, lambda one: one.zero_current_at_most_s or 0.0)
         parts.append(f"zero current in contact for {shortest} at most")
     pause_s = max(one.pause_at_least_s or 0.0 for _, one in every)
-    return f"{', '.join(parts)}; in any play after {number(pause_s, 1)} s of pause or more"
+    pause = f"after a pause of {number(pause_s, 1)} s or more" if pause_s else "with any pause"
+    return f"{', '.join(parts)}; this holds for every play {pause}"
 
 
 def warning_lines(ready: Sequence[Prepared]) -> Iterator[str]:

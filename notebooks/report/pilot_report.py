@@ -208,12 +208,12 @@ def observed_sentences(data: Namings) -> list[str]:
         lines.append(f"Passed over, with neither icon nor answer of the set: {trials.passed} rows or trials of a row.")
     if trials.grouped:
         lines.append(
-            "Counts of one group say nothing of differences between people, of order or of carry-over. The interval "
+            "Counts of one group do not show differences between people, order effects or carry-over. The interval "
             "takes all answers as independent, and the prediction takes the group for one person."
         )
     if trials.never_presented:
         lines.append(
-            f"Never presented: {', '.join(trials.never_presented)}. What is said of them is prediction alone, and "
+            f"Never presented: {', '.join(trials.never_presented)}. Their results are predictions alone, and "
             "per cent correct is that of the others."
         )
     return lines

@@ -23,7 +23,7 @@ MOST_EDITS = 20
 NAMES = {f"laboratory, {channel}": f"sensitivity to {channel} in your laboratory" for channel in ("cold", "warm")}
 DETECTED = (
     "Detected is the share of these people's trials that end in a report; onset is the median time of those reports, "
-    "channel what most of them go by, from 50 % on."
+    "channel that of most of them, from 50 % on."
 )
 
 
