@@ -132,7 +132,7 @@ def report_icons(ready: Sequence[Prepared]) -> None:
 
 
 def icon_line(one: Prepared) -> str:
-    """How an icon is played and how far that is from the design."""
+    """One line on an icon's play and its deviation from the design."""
     delivery = one.delivery
     receptors = [each for each in one.deviation.places if "receptor" in each.place]
     largest = 1e3 * max(abs(each.largest_K) for each in receptors)

@@ -202,7 +202,7 @@ class CrowdOptions(ObserverOptions):
         return {"people": self.people, **super().asked}
 
     def draws(self, model: ObserverModel) -> int:
-        """How many draws to use: as many as were asked for, or the usual number, or as many as there are."""
+        """The number of draws: as many as were asked for, or the usual number, or as many as there are."""
         from thermicon.perception.identification.laboratory import DRAWS
 
         return check_draws(model, self.intervals, "--intervals", DRAWS)
@@ -226,7 +226,7 @@ class FigureOptions(Options):
 
     @property
     def look(self) -> Look:
-        """How the figure is drawn."""
+        """The look of the figure."""
         return SCREEN if self.paper is None else Look(read_width_mm(self.paper))
 
     def write_set(self, ranking: Ranking) -> None:
@@ -282,7 +282,7 @@ def read_set(files: Sequence[str]) -> IconSet:
 
 
 def theirs_of(columns: Sequence[str] | None) -> dict[str, str]:
-    """What a table calls our columns, by ``--column NAME=THEIRS``."""
+    """A table's names for our columns, by ``--column NAME=THEIRS``."""
     pairs = [column.partition("=") for column in columns or []]
     if wrong := [name for name, equals, own in pairs if not (name.strip() and equals and own.strip())]:
         raise usage(f"{wrong[0]!r} is not of the form NAME=THEIRS, for example display_C=T1", "--column")

@@ -60,7 +60,7 @@ class RankedBy(CrowdOptions):
         return {**super().asked, "memory": "episodes"} if self.memory == "rules" else super().asked
 
     def draws(self, model: ObserverModel) -> int:
-        """How many draws to use."""
+        """The number of draws."""
         return 0 if self.memory == "rules" else super().draws(model)
 
 

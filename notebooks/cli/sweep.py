@@ -55,7 +55,7 @@ RECEPTORS = tuple(
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """What people perceive of a set: quantities by name, people, draws for intervals (0: none), and seed."""
+    """Perception in a sweep: quantities by name, people, draws for intervals (0: none), and seed."""
 
     icons: IconSet
     what: tuple[str, ...]

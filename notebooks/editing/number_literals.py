@@ -69,7 +69,7 @@ class Amount:
         return float(Fraction(value) * UNITS[kind][self.unit])
 
     def step(self, value: float, kind: Kind) -> float:
-        """What an SI value is rounded to, in SI: 0.1 °C, 0.05 s, 0.01 A, finer where it is small."""
+        """The rounding step of an SI value, in SI: 0.1 °C, 0.05 s, 0.01 A, finer where it is small."""
         return self.si(self._step(self.in_unit(value, kind)), kind)
 
     def rounded(self, value: float, kind: Kind) -> Decimal:
@@ -199,7 +199,7 @@ def _candidates(text: str, icon: Icon, edited: Icon) -> Iterator[str]:
 def _numbers(
     text: str, before: Sequence[Any], after: Sequence[Any], control: str
 ) -> Iterator[tuple[tuple[int, int], str]]:
-    """Where the numbers that differ stand in the text, and what they become."""
+    """Places in the text of the numbers that differ, with their new text."""
     for old, new in zip(before, after, strict=False):
         if old == new or type(old) is not type(new) or old.span is None:
             continue

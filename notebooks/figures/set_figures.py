@@ -22,7 +22,7 @@ CELL_MM, LETTER_MM, LABEL_MM = 3.4, 1.1, 14.0
 
 
 def narrowest_mm(names: Sequence[str], beside: int = 1) -> float:
-    """How wide heat maps of so many names, one or two beside one another, are at least where each can be read."""
+    """The least width of one or two heat maps of so many names at which each can be read."""
     return beside * (LABEL_MM + LETTER_MM * _longest(names) + CELL_MM * len(names))
 
 

@@ -37,7 +37,7 @@ NARROW_MM, PANEL_MM = 120.0, 42.0
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """What a figure is for: print, so many mm wide, or a screen (None)."""
+    """The purpose of a figure: print, so many mm wide, or a screen (None)."""
 
     width_mm: float | None = None
 

@@ -29,7 +29,7 @@ GOAL = re.compile(r"^# goal:[ \t]*(.*?)[ \t]*(?:\n|\Z)", re.MULTILINE)
 
 @dataclass(frozen=True, slots=True)
 class HistoryStep:
-    """What a step of history holds."""
+    """The content of a step of history."""
 
     text: str
     icon: str | None = None
@@ -123,7 +123,7 @@ class Document:
 
     @property
     def goal(self) -> str:
-        """What is wanted of the set, as its text says in a comment ``# goal: …``; empty where it says nothing."""
+        """The goal of the set in its text, as a comment ``# goal: …``; empty where there is none."""
         found = GOAL.search(self.text)
         return "" if found is None else found[1]
 
@@ -146,7 +146,7 @@ class Document:
 
     @property
     def folder(self) -> Path:
-        """Where files are looked for and new ones are written."""
+        """The folder where files are looked for and new ones are written."""
         return Path() if self.path is None else self.path.parent
 
     def place(self, name: str) -> Path:
@@ -160,7 +160,7 @@ class Document:
         return f"{self.name}{unsaved if self.dirty else ''}"
 
     def warning(self) -> str:
-        """What may cost somebody their text, in one sentence; empty where nothing does."""
+        """The risk of losing text, in one sentence; empty where there is none."""
         if self._changed_on_disk():
             gone = self.path is not None and not self.path.exists()
             happened = "was removed" if gone else "has changed"

@@ -35,7 +35,7 @@ def goal_lines(goal: GoalResult, verdict: str = "") -> Iterator[str]:
 
 
 def goal_value(found: GoalPartResult) -> str:
-    """What was predicted of a part, in its unit, and how far that is from what is wanted."""
+    """The prediction for a part of a goal, in its unit, and its distance from what is wanted."""
     if found.verdict:
         return f"{found.verdict} in this simulation; export judges the worst case"
     if found.value is None:

@@ -72,7 +72,7 @@ def residual_table(fitted: RigFit) -> Grid:
 
 
 def doubts(fitted: RigFit) -> list[str]:
-    """What was not identified with the cure, and pairs that the logs hardly separate."""
+    """Keys that were not identified with the cure, and pairs that the logs hardly separate."""
     lines = [f"not identified: {item.key}; {item.cure}" for item in fitted.unidentified]
     keys = [item.key for item in fitted.parameters]
     pairs = [
@@ -85,7 +85,7 @@ def doubts(fitted: RigFit) -> list[str]:
 
 
 def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:
-    """What the safety gate and virtual people vary from now on, where it is not what it was before."""
+    """The spreads that the safety gate and virtual people use from now on, where they have changed."""
     from thermicon.circuit.rig.uncertainty import WORDS
 
     changed = [

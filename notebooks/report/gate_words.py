@@ -75,7 +75,7 @@ def repeated_text(gates: Sequence[Named]) -> str:
 
 
 def stuck_text(gates: Sequence[Named]) -> str | None:
-    """What a stuck driver does where no cut-off is quick enough, and what helps; None where a cut-off is."""
+    """The effect of a stuck driver where no cut-off is quick enough, with a cure; None where one is."""
     from thermicon.circuit.safety.words import fault_cure
 
     slow = [(name, gate.demands) for name, gate in gates if gate.demands.cut_off_display_C.react_within_s < QUICKEST_S]
@@ -88,7 +88,7 @@ def stuck_text(gates: Sequence[Named]) -> str | None:
 
 
 def demands_text(gates: Sequence[Named]) -> str:
-    """What hardware must do for all icons: of each demand the strictest."""
+    """Demands on the hardware for all icons: of each the strictest."""
     every = [(name, gate.demands) for name, gate in gates]
     cut = [one.cut_off_display_C for _, one in every]
     low, high = max(one.low for one in cut), min(one.high for one in cut)
@@ -145,7 +145,7 @@ def warning_lines(ready: Sequence[Prepared]) -> Iterator[str]:
 
 
 def spread_text(spread: OpenLoopSpread) -> str:
-    """What an open loop leaves open, and what does not."""
+    """The uncertainty that an open loop leaves."""
     step = " … ".join(signed(value, "+.1f") for value in spread.step_K)
     low, high = spread.baseline_C
     return (

@@ -85,7 +85,7 @@ def sets_table(found: Observed[Any, Any], files: Sequence[str]) -> Grid:
 
 
 def draws_sentences(found: Observed[Any, Any]) -> list[str]:
-    """How many draws carry the result, and which constants moved."""
+    """The number of draws that carry the result, and the constants that moved."""
     from thermicon.perception.pilot.conditioning import Namings
 
     own, people, answered = found.conditioned, found.predictions[0].after.people, isinstance(found.data, Namings)
@@ -279,7 +279,7 @@ def _verdict(found: Observed[Namings, Fit]) -> str:
 
 
 def misfit(before: float, after: float, what: str, laboratories: int, cure: str = "") -> str:
-    """What a small p says of the model, with a cure where it cannot explain them; empty where neither is small.
+    """The meaning of a small p, with a cure where the model cannot explain it; empty where neither is small.
 
     >>> misfit(0.02, 0.3, "answers", 500)
     'the prediction missed, but laboratories that the evidence allows explain the answers'

@@ -163,7 +163,7 @@ def edit_text(made: SetReport, pair: PairScore, lead: str = "cheapest edit: ") -
 
 
 def edit_words(edit: Edit) -> str:
-    """What an edit changes, and how far apart the pair is then."""
+    """The change by an edit, and the distance of the pair after it."""
     added = f" ({number(edit.added_s)} s longer)" if edit.added_s >= 0.05 else ""
     return f"in {edit.icon}, {edit.old} → {edit.new}{added}; then d′ {number(edit.d_prime)}"
 
