@@ -79,7 +79,7 @@ class Table:
         return (row[at] if at < len(row) else "" for row in self.rows)
 
     def records(self, names: Sequence[str]) -> Iterator[tuple[int, dict[str, str]]]:
-        """Line and cells by name of each row, of those columns that there are."""
+        """Line number of each row, with its cells by the names of the columns present."""
         there = [name for name in names if name in self.header]
         for line, *cells in zip(self.lines, *map(self.texts, there), strict=True):
             yield line, dict(zip(there, cells, strict=True))
@@ -205,7 +205,7 @@ def read_table(
 
 
 def _line_of_names(text: str, names: Sequence[str], theirs: Mapping[str, str]) -> tuple[int, str, int]:
-    """How many lines stand above the names, what separates the cells, and how many of those lines say something."""
+    """The number of lines above the names, the separator of cells, and how many of those lines have text."""
     lines = [line[:LONGEST_LINE] for line in itertools.islice(io.StringIO(text), MOST_ABOVE)]
     head = max((at for at, line in enumerate(lines) if line.startswith("***End_of_Header***")), default=-1)
     first = next((at for at, line in enumerate(lines) if line.strip() and not line.startswith(ASIDE)), len(lines))

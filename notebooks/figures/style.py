@@ -42,7 +42,7 @@ class Look:
     width_mm: float | None = None
 
     def across(self, panels: int) -> int:
-        """How many panels fit beside one another, of those that stand so where there is room.
+        """The number of panels side by side where there is room.
 
         >>> Look().across(3), Look(85.0).across(3), Look(180.0).across(3)
         (3, 2, 3)

@@ -120,7 +120,7 @@ def _range(ranking: Ranking, interval: str) -> str:
 
 
 def memory_points(ranking: Ranking) -> Iterator[str]:
-    """Yield whether the order would change with the other form of memory; nothing for one icon."""
+    """Yield the change of order with the other form of memory; nothing for one icon."""
     for form, share in ranking.memory_sensitivity.items() if ranking.pairs else ():
         changes = ranking.memory_changes[form]
         if not changes:

@@ -141,27 +141,27 @@ def correct_of(places: Sequence[int], probability: Array) -> float:
     return float(np.mean([probability[:, k, k].mean() for k in places]))
 
 
-def six_icons(found: VariantConfusions, trials: int, seed: int) -> tuple[Predicted, ...]:
+def six_icons(confused: VariantConfusions, trials: int, seed: int) -> tuple[Predicted, ...]:
     """Proportion correct, information (exact, and as the experiment would report it), each icon, spread of people."""
-    most = math.log2(len(found.labels))
+    most = math.log2(len(confused.labels))
 
     def share_of_people(share: float) -> Score:
         return lambda p: float(np.percentile(proportion_correct(p), share))
 
-    asked: list[tuple[str, str, Score, float]] = [
+    scores: list[tuple[str, str, Score, float]] = [
         ("proportion correct", "proportion", correct, 1.0),
         ("proportion correct, lower end of people", "proportion", share_of_people(2.5), 1.0),
         ("proportion correct, upper end of people", "proportion", share_of_people(97.5), 1.0),
         ("plug-in information", "bit", lambda p: plugin_bits(p, trials, seed, EXPERIMENTS), most),
         ("information", "bit", lambda p: float(information_bits(p).mean()), most),
     ]
-    asked += [
+    scores += [
         (f"proportion correct, {name}", "proportion", partial(correct_of, [k]), 1.0)
-        for k, name in enumerate(found.labels)
+        for k, name in enumerate(confused.labels)
     ]
-    made = [found.predicted("six icons", name, unit, score, top=top) for name, unit, score, top in asked]
-    made[3] = replace(made[3], conditions=f"{found.said}; plug-in estimate of {trials} trials a person")
-    return tuple(made)
+    results = [confused.predicted("six icons", name, unit, score, top=top) for name, unit, score, top in scores]
+    results[3] = replace(results[3], conditions=f"{confused.said}; plug-in estimate of {trials} trials a person")
+    return tuple(results)
 
 
 WAVES = "wave-confusions"
@@ -193,7 +193,7 @@ def likeness(rig: Rig) -> tuple[Likeness, ...]:
     from thermicon.circuit.solver.simulate import duration_s
     from thermicon.icons import load_library
 
-    icons, found = load_library(WAVES), []
+    icons, similar = load_library(WAVES), []
     for poles, period in GROUPS:
         own = {shape: icons[wave_name(shape, poles, period)] for shape in SHAPES}
         end = max(duration_s(icon, rig) for icon in own.values()) + TAIL_S
@@ -204,31 +204,31 @@ def likeness(rig: Rig) -> tuple[Likeness, ...]:
         for first, second in PAIRS:
             apart = (skin[first] - skin[second]) / swing
             rms = float(np.sqrt((apart**2).mean()))
-            found.append(Likeness(f"{poles}, {period} s", (first, second), float(np.abs(apart).max()), rms))
-    return tuple(found)
+            similar.append(Likeness(f"{poles}, {period} s", (first, second), float(np.abs(apart).max()), rms))
+    return tuple(similar)
 
 
-def wave_shapes(found: VariantConfusions, alike: Sequence[Likeness]) -> tuple[Predicted, ...]:
+def wave_shapes(confused: VariantConfusions, alike: Sequence[Likeness]) -> tuple[Predicted, ...]:
     """Similarity of shapes at the skin, and whether they are each other's main confusions."""
-    places = {shape: [found.labels.index(wave_name(shape, *group)) for group in GROUPS] for shape in SHAPES}
-    made, skin = [], "skin temperature over the swing, largest of four groups"
-    said = f"named from memory, {len(found.labels)} icons, {found.probability.shape[0]} people, {USUAL_MEMORY}"
+    places = {shape: [confused.labels.index(wave_name(shape, *group)) for group in GROUPS] for shape in SHAPES}
+    results, skin = [], "skin temperature over the swing, largest of four groups"
+    how = f"named from memory, {len(confused.labels)} icons, {confused.probability.shape[0]} people, {USUAL_MEMORY}"
     for pair in PAIRS:
         both = " and ".join(pair)
         largest = max(one.largest for one in alike if one.pair == pair)
-        asked, ends = f"largest difference of {both}", (None, None)
-        made.append(Predicted("wave shapes", asked, "both", largest, "1", *ends, found.variable, skin))
+        name, ends = f"largest difference of {both}", (None, None)
+        results.append(Predicted("wave shapes", name, "both", largest, "1", *ends, confused.variable, skin))
         main, mixed = partial(_main, places, pair), partial(_mixed, places, pair)
-        for asked, unit, score, top in (
+        for name, unit, score, top in (
             (f"confusion of {both} over any other", "1", main, math.inf),
             (f"confusion of {both} over the mean of others", "1", partial(_main, places, pair, mean=True), math.inf),
             (f"confusion of {both}", "proportion", mixed, 1.0),
         ):
-            made.append(found.predicted("wave shapes", asked, unit, score, conditions=said, top=top))
+            results.append(confused.predicted("wave shapes", name, unit, score, conditions=how, top=top))
     for shape in SHAPES:
-        asked, score = f"proportion correct, {shape}", partial(correct_of, places[shape])
-        made.append(found.predicted("wave shapes", asked, "proportion", score, conditions=said, top=1.0))
-    return tuple(made)
+        name, score = f"proportion correct, {shape}", partial(correct_of, places[shape])
+        results.append(confused.predicted("wave shapes", name, "proportion", score, conditions=how, top=1.0))
+    return tuple(results)
 
 
 def _main(places: dict[str, list[int]], pair: tuple[str, str], probability: Array, *, mean: bool = False) -> float:

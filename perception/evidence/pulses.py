@@ -35,7 +35,7 @@ def _ranked(seed: int) -> Ranking:
 
 @lru_cache(maxsize=4)
 def best_pulses(count: int, seed: int) -> tuple[Icon, ...]:
-    """The so many sequences of which the nearest two are farthest apart; those named best are no better."""
+    """The sequences, `count` of them, whose nearest two are farthest apart; those named best are no better."""
     chosen = choose(_ranked(seed), Selection(count), parameters=0).icons
     return tuple(icon for icon in _ranked(seed).job.icons if icon.name in chosen)
 

@@ -116,7 +116,7 @@ class Laboratory:
 
     @cached_property
     def _receptors(self) -> dict[tuple[str, Channel], tuple[Array, float, float]]:
-        """Receptor responses of a site to a unit ramp, as long as was needed, rest at over 0 °C, and for each K."""
+        """Receptor responses of a site to a unit ramp, their rest at 0 °C, and its change per K."""
         return {}
 
     def _receptor(self, site_rig: str, channel: Channel, rows: int) -> tuple[Array, float, float]:

@@ -239,7 +239,7 @@ def scored(
     task: Task,
     invited: NDArray[np.int64],
 ) -> tuple[Array, ...]:
-    """Scores of those who are invited (correct, bits, detected, d′, onset, confusions), and of each single one."""
+    """Scores of the invited people (correct, bits, detected, d′, onset, confusions), and of each single one."""
     samples = min(SAMPLES, max(LEAST, NAMED // len(few.names)))
     felt = respond(few, people, observer, times=True)
     d_prime, confusion = identify(felt, form, people, observer, seed, samples, task=task)

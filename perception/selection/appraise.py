@@ -52,7 +52,7 @@ class Appraisal:
     reached: float
 
     def value(self, objective: Objective) -> float:
-        """The number that an objective goes by."""
+        """The number by which an objective judges a set."""
         return {
             "worst": self.d_prime,
             "correct": self.proportion_correct,
