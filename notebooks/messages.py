@@ -1,4 +1,4 @@
-"""Messages to the person at the terminal, exit codes, and the rig that the options of a command name."""
+"""Messages to the person at the terminal with exit codes; also the rig that a command's options name."""
 
 from __future__ import annotations
 

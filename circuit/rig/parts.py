@@ -1,4 +1,4 @@
-"""The parts of a rig besides module and skin: heat sink, driver, contact, probes."""
+"""Parts of a rig other than module or skin: heat sink, driver, contact, probes."""
 
 import re
 from dataclasses import dataclass

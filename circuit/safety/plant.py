@@ -1,4 +1,4 @@
-"""The interface between the gate and a module or display in all corners, also the result of one play."""
+"""The interface between the gate and a module or display in all corners; also the result of one play."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Input files, read with a limit of size, and the icon sets that ship with the package."""
+"""Input files, read with a limit of size; also the icon sets that ship with the package."""
 
 import errno
 import stat

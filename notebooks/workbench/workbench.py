@@ -1,4 +1,4 @@
-"""The workbench: design, set and export of thermal icons as one page of widgets or as figures."""
+"""The workbench: design view, set view, export view, as one page of widgets or as figures."""
 
 from __future__ import annotations
 
