@@ -32,7 +32,7 @@ class Nearest:
 
     @property
     def sentence(self) -> str:
-        """The necessary change, in one sentence."""
+        """What to change, in one sentence."""
         if self.slower > 1:
             return f"it is reached with its ramps {self.slower:.3g} times as slow"
         return f"it is reached with its changes {self.smaller:.3g} times as large, in the same time"

@@ -54,8 +54,8 @@ def test_two_perfused_layers_rest_where_the_closed_form_says() -> None:
 
 
 def test_layers_of_the_sites() -> None:
-    corneum = {name: Rig.load(name).skin.layers[0].thickness_m * 1e3 for name in SITES}
-    assert corneum == pytest.approx({"thenar": 0.17, "fingertip": 0.30, "forearm": 0.022, "hand-dorsum": 0.029})
+    horny = {name: Rig.load(name).skin.layers[0].thickness_m * 1e3 for name in SITES}
+    assert horny == pytest.approx({"thenar": 0.17, "fingertip": 0.30, "forearm": 0.022, "hand-dorsum": 0.029})
     forearm = Rig.load("forearm").skin.layers
     assert forearm[1].thickness_m == pytest.approx(0.08e-3)
     assert 1.2e-3 <= forearm[2].thickness_m <= 2e-3
