@@ -151,7 +151,7 @@ def _check_kind(text: str, where: str, what: str, error: type[Exception]) -> Non
 
 
 def _unreadable(document: dict[str, Any]) -> str | None:
-    """What no table of ours can hold: deeper nesting, or whole numbers beyond 64 bits."""
+    """Content that no table of ours can hold: deeper nesting, or whole numbers beyond 64 bits."""
     open_: list[tuple[str, Any, int]] = [(key, value, 1) for key, value in document.items()]
     while open_:
         key, value, depth = open_.pop()

@@ -24,7 +24,7 @@ def code_digest(packages: tuple[str, ...] = DRIVES) -> str:
 
 
 def this_program() -> dict[str, str]:
-    """What a sidecar states about the program: its version, and the digest of the code that computes drives."""
+    """The program as a sidecar states it: its version, and the digest of the code that computes drives."""
     return {"version": own_version(), "code_sha256": code_digest()}
 
 

@@ -1,4 +1,4 @@
-"""The writer of files, which are complete or absent, and the user's private cache folder."""
+"""The writer of files, which are complete or absent; also the user's private cache folder."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ HEAD = 20_000
 
 
 def other_kind(text: str, expected: str) -> tuple[str, str] | None:
-    """What a text is that is not of the `expected` kind, and where it belongs; None where no other kind is plain.
+    """The kind of a text that is not of the `expected` one, and where it belongs; None where none is certain.
 
     >>> other_kind("# mine\\n[contact]\\narea_cm2 = 4\\n", "study file")
     ('this is a rig file, not a study file', 'give it as the rig')

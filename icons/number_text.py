@@ -112,7 +112,7 @@ def significant(value: float, *limits: float, least: int = 3) -> tuple[str, ...]
 
 
 def verdict(value: float, limit: float) -> str:
-    """How a value stands to what is just noticeable.
+    """The relation of a value to a just noticeable one.
 
     >>> verdict(1.5, 1.43), verdict(1.43, 1.43), verdict(1.2, 1.43)
     ('more than', 'as much as', 'within')

@@ -1,4 +1,4 @@
-"""Messages to the person at the terminal, exit codes, and the rig that the options of a command name."""
+"""Messages to the person at the terminal with exit codes; also the rig that a command's options name."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def into_nowhere(stream: TextIO) -> None:
     os.close(nowhere)
 
 
-class Missing(typer.BadParameter):
+class MissingArgument(typer.BadParameter):
     """An argument or option that is needed here, though another form of the command does without it."""
 
     def format_message(self) -> str:

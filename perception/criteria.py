@@ -6,7 +6,7 @@ DISTINGUISHABLE_DPRIME = 2.563
 FELT_FROM = 0.5
 """An icon is felt from this probability of a report on: then its onset is the median over trials that mostly report.
 
-What fewer trials report is no alert, and is chosen only if it is asked for.
+An icon that fewer trials report is not an alert, and is chosen only if it is asked for.
 """
 
 MOST_ICONS = 2000

@@ -1,7 +1,4 @@
-"""The budget of the house: maintained lines, public names, options of commands, words of docs.
-
-`budget.toml` holds the greatest numbers; `python tests/count.py` prints the lines of each room.
-"""
+"""The budget of the house (`budget.toml`): maintained lines, public names, options of commands, words of docs."""
 
 import re
 import tomllib

@@ -1,4 +1,4 @@
-"""Docstrings: numpydoc form, arguments and units of public names; a single idea in the first line of modules."""
+"""Docstrings of all public names: numpydoc form, with every argument and its unit."""
 
 import importlib
 import inspect

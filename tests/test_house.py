@@ -86,6 +86,13 @@ def test_no_module_is_too_long() -> None:
     assert not long, f"over {LINES_AT_MOST} lines, split where the idea splits: {long}"
 
 
+def test_modules_open_with_one_idea() -> None:
+    """Few first sentences have a semicolon, or a comma beside "and"."""
+    opened = (ast.get_docstring(ast.parse(path.read_text("utf-8"))) for path in project_files() if path.suffix == ".py")
+    firsts = [re.split(r"[.?]\s", text or "", maxsplit=1)[0] for text in opened]
+    assert sum(";" in first or (" and " in first and "," in first) for first in firsts) <= 60
+
+
 def test_no_two_classes_have_one_name() -> None:
     places = defaultdict(list)
     for path in (path for package in FLOW for path in sorted((ROOT / package).rglob("*.py"))):

@@ -4,7 +4,7 @@
    the icon, since a slower one leaves out codes that were judged. It puts out zero, for good, when the measured
    temperature leaves THERMICON_LOW_C ... THERMICON_HIGH_C, a sensor is lost or frozen, the host has not called
    thermicon_feed() for THERMICON_WATCHDOG_S, the loop is late, its clock stands still, or thermicon_abort() was called;
-   only thermicon_begin() leaves a fault. It is no replacement for a cut-off that works without software.
+   only thermicon_begin() leaves a fault. It does not replace a cut-off that works without software.
    A watchdog of 0 means that no hang is safe and the cut-off must protect: a sensor is then needed, and the host has
    THERMICON_REACT_S.
 

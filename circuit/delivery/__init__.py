@@ -1,1 +1,1 @@
-"""thermicon.circuit.delivery: devices, drive files and what comes with them."""
+"""thermicon.circuit.delivery: devices and drive files."""

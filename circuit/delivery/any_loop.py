@@ -1,4 +1,4 @@
-"""What no loop around a module can pass, whatever its gains, lag, delay and supply: within current limits and cut-offs.
+"""Bounds for every control loop around a module, whatever its gains, lag, delay or supply.
 
 The skin moves fastest where a loop swings from one cut-off to the other at its current limits. Every temperature of
 skin lies between those of a display held at either cut-off indefinitely, since more heat in means warmer everywhere;

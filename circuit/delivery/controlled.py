@@ -1,4 +1,4 @@
-"""The gate for a controller around the rig's own module: its display at the set-points, and what any loop may do.
+"""The gate for a controller around the rig's own module.
 
 A display that is as far from its set-points, and from what the loop makes of them, as its sensor may be wrong bounds
 the doses of repetition, and the temperatures of a loop that works. What no loop may pass, in any play after any other,
@@ -101,9 +101,7 @@ def _demands(
     unpowered_C: tuple[float, float],
     proven: tuple[Loop, Limits_A, CutOff],
 ) -> Demands:
-    """What set-points demand, and a loop that loses its sensor or has its poles swapped; the cut-off leaves room for
-    a start without power.
-    """
+    """Demands of set-points, and of a loop that loses its sensor or has its poles swapped."""
     loop, limits_A, cut = proven
     rest_s = _rest_s(under, delivery, unpowered_C)
     start = SingleFault("unpowered loop", "green", {"display_C": unpowered_C, "rest_s": rest_s})

@@ -1,4 +1,4 @@
-"""What a device delivers of a cue: quantised, held, limited, and simulated again.
+"""Delivery of a cue by a device: quantised, held, limited, simulated again.
 
 A file of samples begins and ends at rest: its first update (`lead_s`) holds the baseline, its last row marks the end.
 """
@@ -95,7 +95,7 @@ def _cut(drive: Drive, end_s: float) -> Drive:
 
 
 def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design) -> Narrowed | None:
-    """How a device's range is too small for a design, with a cure; None where it is wide enough."""
+    """The shortfall of a device's range for a design, with a cure; None where it is wide enough."""
     wanted_A, narrow_driver = plan.drive.current_A, narrow.driver
     if wanted_A.min() >= narrow_driver.current_min_A - 1e-9 and wanted_A.max() <= narrow_driver.current_max_A + 1e-9:
         return None

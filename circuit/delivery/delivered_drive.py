@@ -60,7 +60,7 @@ class DeliveredDrive:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What to know about the delivery: limits of the device, and of the driver, which a bridge replaces."""
+        """Limits of the device, and of the driver, which a bridge replaces."""
         return self.device_warnings if self.device.kind.switches else (*self.device_warnings, *self.trace.beyond)
 
     @property
@@ -86,7 +86,7 @@ class ModuleDrive(DeliveredDrive):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class ThermodeDrive(DeliveredDrive):
-    """What a thermode shows; `prompt_trace` is without its lag, since a constant lag is a delay and not a loss."""
+    """A thermode's display; `prompt_trace` is without its lag, since a constant lag is a delay and not a loss."""
 
     played: Setpoints
     prompt_trace: Trace
@@ -112,7 +112,7 @@ class Deviation:
 
 @dataclass(frozen=True, slots=True)
 class DeliveryDeviation:
-    """How far a delivered trace deviates from the designed one, at the skin and at both receptors."""
+    """Deviation of a delivered trace from the designed one, at the skin and at both receptors."""
 
     places: tuple[Deviation, ...]
 

@@ -1,4 +1,4 @@
-"""The schema of a device file: its keys, and what its records may state."""
+"""The schema of a device file."""
 
 import tomllib
 from collections.abc import Iterable, Iterator
@@ -61,7 +61,7 @@ class DeviceTable(KeyTable):
     record: Annotated[list[DeviceRecordTable], Field(min_length=1, max_length=100)]
 
     def faults(self) -> Iterable[str]:
-        """What its records state that no device has, and what they lack."""
+        """Statements of its records that no device has, and missing ones."""
         (known, needed), driven_by = quantities(), self.driven_by
         stated = {record.quantity: record for record in reversed(self.record)}
         for place, record in enumerate(self.record):

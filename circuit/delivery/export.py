@@ -1,4 +1,4 @@
-"""Export in one call: icons, a rig, a device and a format give the files that play them, or the reasons against it."""
+"""Export in one call: files that play the icons, or the reasons for refusing them."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class ExportError(InputError):
 
 
 class Felt(Protocol):
-    """What a device changes in the perception of one icon."""
+    """The change by a device in the perception of one icon."""
 
     @property
     def icon(self) -> str:
@@ -79,7 +79,7 @@ class Export:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What to know of the drives before they are played, each with the name of its icon."""
+        """Warnings about the drives before they are played, each with the name of its icon."""
         return tuple(
             f"{prepared.delivery.icon.name}: {text}" for prepared in self.prepared for text in prepared.warnings
         )

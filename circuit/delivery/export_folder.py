@@ -51,7 +51,7 @@ def check_export_folder(folder: Path, replace: bool = False, how: str = HOW) -> 
 
 
 def before_of(folder: Path) -> Path:
-    """Where the state of a folder stands that an export has replaced."""
+    """The path of the state of a folder that an export has replaced."""
     return folder.with_name(f"{folder.name}.before")
 
 

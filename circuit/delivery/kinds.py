@@ -1,4 +1,4 @@
-"""The five kinds of device: what each puts out, how it delivers a cue, which gate judges that, and what plays it."""
+"""The five kinds of device, each with its output, delivery, gate, players."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -31,7 +31,7 @@ RIPPLES_BELOW_HZ = 100.0
 
 
 class Kind:
-    """What a device puts out; as it stands here, a current that nothing corrects.
+    """A kind of device by its output; this base puts out a current that nothing corrects.
 
     `command` is the column of its commands, in their unit. A device of a `regulated` kind measures its display and
     corrects it. One that `switches` puts out all its current or none. `player` is how the exported player plays it:

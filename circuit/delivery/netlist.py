@@ -1,4 +1,4 @@
-"""The same circuit as text that both LTspice and ngspice read: driver, module and skin.
+"""The circuit as a netlist that both LTspice and ngspice read.
 
 After Fig. 2b of Shani & Lineykin 2021: electrical side in V and A; thermal side 1 V is 1 °C and 1 A is 1 W.
 """

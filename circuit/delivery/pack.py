@@ -1,4 +1,4 @@
-"""Prepared cues packed into files: a drive and a sidecar for each, and the files of the set; nothing is written."""
+"""The files of an export in memory: drives with sidecars, files of the set."""
 
 import hashlib
 import json

@@ -1,4 +1,4 @@
-"""Icons prepared for export: delivered by a device, judged in the worst case, and accepted or refused."""
+"""Icons prepared for export: delivered by a device, judged by the gate, accepted or refused."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Prepared:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What to know about the delivery, then what is amber; without what it is refused for."""
+        """Warnings about the delivery, then amber findings; without the reasons of a refusal."""
         told = {text for refusal in self.refusals for text in refusal.tells}
         return (*(text for text in self.delivery.warnings if text not in told), *self.verdict.cautions)
 
@@ -127,7 +127,7 @@ def refusals_of(delivery: DeliveredDrive, verdict: Gate, deviation: DeliveryDevi
 
 
 def lost_text(deviation: DeliveryDeviation) -> str:
-    """What both receptors lose beyond the stated limit, the worse first, in words; empty where neither does."""
+    """Losses of both receptors beyond the stated limit, the worse first, in words; empty where there are none."""
     limit = loss_limit("receptor difference")
     if not deviation.lost:
         return ""
@@ -157,7 +157,7 @@ def _out_of_reach(delivery: DeliveredDrive, outcome: Outcome, safe: bool) -> str
 
 
 def _lossy(delivery: DeliveredDrive, lost: str) -> Refusal:
-    """What is lost, why, and what would lose less."""
+    """The refusal of a lossy delivery: the loss, its reason, and what would lose less."""
     device, played = delivery.device, delivery.played
     if isinstance(played, Setpoints):
         why = f"{device.name}: its set-points have steps of {played.step_K:g} K"

@@ -1,4 +1,4 @@
-"""Samples: a designed drive as the codes of a device at its update rate, and the current that then flows."""
+"""Samples: a designed drive as the codes of a device at its update rate, with the resulting current."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Set-points: the display of a design as straight segments, for a thermode, and how its own loop then follows them.
+"""Set-points for a thermode: the display of a design as straight segments, with the response of its own loop.
 
 The rig is not involved: a thermode measures its own surface and corrects it.
 """

@@ -94,7 +94,7 @@ def rest_of_a_loop(rig: Rig, level_C: float) -> tuple[float, Array]:
     for current in (limit, float(np.clip(most_cooling, driver.current_min_A, driver.current_max_A))):
         with suppress(ArithmeticError):
             return current, state_under_current(network, current)
-    raise RigError(f"rig {rig.name}, one corner of it: it heats without limit at rest; begin nearer to rest")
+    raise RigError(f"rig {rig.name}, in one corner: it heats without limit at rest; begin nearer to rest")
 
 
 def past_most_cooling(rigs: Sequence[Rig]) -> Bank:

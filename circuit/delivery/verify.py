@@ -1,4 +1,4 @@
-"""Whether the files of an export are as they were exported: drives, set files, sidecars, rig, device and program."""
+"""Verification of an export's files against the digests in its sidecars."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ class Remark:
 
 @dataclass(frozen=True, slots=True)
 class Verification:
-    """What each sidecar of a folder claims, by its name, and all findings; `well` where nothing is wrong."""
+    """Claims of each sidecar of a folder, by its name, and all findings; `well` where nothing is wrong."""
 
     claims: Mapping[str, Claims]
     findings: tuple[Remark, ...]
@@ -44,7 +44,7 @@ class Verification:
 
 
 def verify(files: Mapping[str, bytes]) -> Verification:
-    """What does not belong together among files by name; another version of the program is told, and not wrong."""
+    """Mismatches among files by name; another version of the program is reported but does not count as wrong."""
     tables = {name: table_of(content) for name, content in sorted(files.items()) if name.endswith(".json")}
     claims = {name: each for name in tables if (each := claims_of(files[name])) is not None}
     bound = {name: each.digests for name, each in claims.items()}

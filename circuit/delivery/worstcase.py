@@ -1,4 +1,4 @@
-"""The gate of safety for what a device delivers, and what an open loop does in the corners of a rig's uncertainty.
+"""The safety gate for a delivered cue, with an open loop's display in the corners of a rig's uncertainty.
 
 A thermode shows its own set-points at its own tick: they are judged as they stand, with its lag and without.
 """

@@ -52,7 +52,7 @@ def unknown_display(display_C: Array) -> Array:
 
 
 def one_phase(time_s: Array, current: Array, display_C: Array) -> Array:
-    """What (rows,) a current is wrong by, as one SD, if a loop was always read at one phase of its steps.
+    """Error (rows,) of a current, as one SD, if a loop was always read at one phase of its steps.
 
     A step's course is as large as the step: the display's rate, against half of the greatest jump of readings.
     """

@@ -32,7 +32,7 @@ tenth of them differs by, each further one from those before by so many times wh
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Prediction:
-    """What a run should have measured: columns at rows, and the drive at any time; `gain` times it is the current."""
+    """Predicted columns of a run at its rows, with the drive at any time; `gain` times the drive is the current."""
 
     trace: Trace
     drive: Drive

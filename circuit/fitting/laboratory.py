@@ -66,7 +66,7 @@ def write_log(log: Log, path: str | Path) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Expected:
+class Forecast:
     """Half widths of the 95 % intervals to expect, one for each key, with some sensors."""
 
     columns: tuple[str, ...]
@@ -77,8 +77,8 @@ class Expected:
 
 def plan(
     rig: Rig, free: Sequence[str] | None = None, *, offset_K: float = OFFSET_SD_K, fixed_skin: bool = False
-) -> tuple[Expected, ...]:
-    """How well each choice of sensors, the least first, will identify keys by the calibration drive of a module.
+) -> tuple[Forecast, ...]:
+    """Predicted precision of keys for each choice of sensors, the fewest first, with a module's calibration drive.
 
     From the curvature of the sum of squares, with ten rows a second of white noise: what the rig lacks adds to it.
     """
@@ -94,8 +94,8 @@ def plan(
     return tuple(_expected(problem, columns) for columns in CHOICES)
 
 
-def _expected(problem: FitProblem, columns: tuple[str, ...]) -> Expected:
+def _expected(problem: FitProblem, columns: tuple[str, ...]) -> Forecast:
     deviations = expected_sd(with_channels(problem, problem.first, columns, only=True), problem.first)
     each = [(key, float(sd)) for key, sd in zip(problem.keys, deviations, strict=True)]
     widths = tuple(half_width(key.log, sd) for key, sd in each)
-    return Expected(columns, problem.keys, widths, tuple(is_identified(key.log, sd, key.usual) for key, sd in each))
+    return Forecast(columns, problem.keys, widths, tuple(is_identified(key.log, sd, key.usual) for key, sd in each))

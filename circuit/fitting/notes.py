@@ -31,7 +31,7 @@ OFFSET_SDS = 3.0
 def disagreement(
     problem: FitProblem, solution: Solution, missed: Sequence[str], late: str, unknown: Sequence[FittedParameter]
 ) -> tuple[tuple[str, ...], str]:
-    """What rig and logs do not agree in, and why in a few words; `missed` and `late` are sentences on channels."""
+    """Disagreements of rig and logs with a brief reason; `missed` and `late` are sentences on channels."""
     if late:
         return (late,), "the columns of a log are not of one time"
     if not solution.converged:
@@ -121,7 +121,7 @@ def unsteady(problem: FitProblem, theta: Array) -> list[str]:
 
 
 def kept(parameters: Sequence[FittedParameter]) -> tuple[str, ...]:
-    """What the fitted rig keeps of the rig before, since the logs do not say it."""
+    """Values that the fitted rig keeps from the rig before, since the logs do not determine them."""
     values = ", ".join(f"{item.key} = {item.start:.4g} {item.unit}".rstrip() for item in parameters)
     return (f"not identified, so that the fitted rig keeps what the rig before had: {values}",) if values else ()
 

@@ -27,7 +27,7 @@ LEAST_SHARE, NOTHING = 0.5, 1e-12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Beside:
+class OverlaidColumn:
     """One column beside a simulation: `time_s` on its clock, `measured` and `simulated` (rows,)."""
 
     column: str
@@ -66,7 +66,7 @@ class Overlay:
 
     name: str
     shift_s: float
-    columns: tuple[Beside, ...]
+    columns: tuple[OverlaidColumn, ...]
 
     def __repr__(self) -> str:
         parts = [f"{item.column} rms {item.rms:.2g}, largest {item.largest:+.2g}" for item in self.columns]
@@ -92,7 +92,7 @@ def overlay(trace: Trace, log: Log, *, shift_s: float | None = None) -> Overlay:
         rows = inside & np.isfinite(log.column(name))
         if rows.sum() > 1:
             expected = np.interp(time[rows], trace.time_s, simulated[name])
-            columns.append(Beside(name, time[rows], log.column(name)[rows], expected))
+            columns.append(OverlaidColumn(name, time[rows], log.column(name)[rows], expected))
     if not columns:
         raise LogError(
             f"{log.name}: no row at a time of the trace, {trace.time_s[0]:g} to {trace.time_s[-1]:g} s, with a shift "
@@ -102,7 +102,7 @@ def overlay(trace: Trace, log: Log, *, shift_s: float | None = None) -> Overlay:
 
 
 def best_shift_s(reference_s: Array, reference: Array, time_s: Array, values: Array) -> tuple[float, float]:
-    """What to add to `time_s` so that values fit a reference best, and the correlation; 0 where nothing changes."""
+    """Time to add to `time_s` for the best fit to a reference, with the correlation; 0 where nothing changes."""
     there, other = np.isfinite(reference), np.isfinite(values)
     if not (there.any() and other.any()):
         return 0.0, 0.0

@@ -20,7 +20,7 @@ from ..rig.skin import layer_spreads
 from .forward import Prediction, predict
 from .keys import FitError, FitKey, value_of
 from .runs import DISPLAY, Channel, Run
-from .whiten import Shared, shared
+from .whiten import CommonErrors, shared
 
 OFFSET_SD_K = 0.1
 """Standard deviation of a thermistor's zero: interchangeable ones are sold as ±0.1 to ±0.2 K."""
@@ -82,7 +82,7 @@ class FitProblem:
     fixed_skin: bool
     unknowns: tuple[Unknown, ...]
     _kept: dict[bytes, tuple[Prediction, ...]] = field(init=False, default_factory=dict)
-    _shared: list[Shared | None] = field(init=False, default_factory=list)
+    _shared: list[CommonErrors | None] = field(init=False, default_factory=list)
 
     @staticmethod
     def of(
@@ -103,7 +103,7 @@ class FitProblem:
 
     @property
     def first(self) -> Array:
-        """Where the fit begins (unknowns,)."""
+        """Starting point of the fit (unknowns,)."""
         return np.array([item.first for item in self.unknowns])
 
     @property
@@ -113,7 +113,7 @@ class FitProblem:
 
     @property
     def along(self) -> tuple[Unknown, ...]:
-        """What is fitted along with the keys."""
+        """Unknowns that are fitted along with the keys."""
         return self.unknowns[len(self.keys) :]
 
     @property
@@ -173,7 +173,7 @@ class FitProblem:
         return np.asarray(time + self.runs[run].shifts[channel.clock - 1] + shift + drift * (time - time[0]))
 
     def modelled(self, theta: Array, run: int, place: int, rows: Prediction) -> Array:
-        """What a channel should read at its rows: the simulation on its clock, with its sensor's offset."""
+        """Predicted readings of a channel at its rows: the simulation on its clock, with its sensor's offset."""
         channel = self.runs[run].channels[place]
         row = 0.0 if channel.clock else self.nuisance(theta, "row", run, 0)
         late = self.nuisance(theta, "late", run, place)
@@ -233,7 +233,7 @@ class FitProblem:
         return wide
 
     def mesh_error(self, theta: Array, sigma: Sequence[float]) -> Array:
-        """What a fine mesh of the skin would change in `residuals`; nothing where the rig states its elements."""
+        """Change of `residuals` with a fine mesh of the skin; nothing where the rig states its elements."""
         skin, here = self.rig.skin, self.residuals(theta, sigma)
         if skin.elements is not None:
             return 0.0 * here

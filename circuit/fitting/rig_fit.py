@@ -20,7 +20,7 @@ from ..rig.settings import toml_text
 from ..rig.uncertainty import Uncertainty
 from .identify import FittedParameter
 from .keys import FitKey
-from .overlay import Beside
+from .overlay import OverlaidColumn
 from .problem import FitProblem
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ChannelFit(Beside):
+class ChannelFit(OverlaidColumn):
     """A measured column of a `file` beside the fitted rig, with the sensor's `offset_K`; `unit` of a difference."""
 
     run: str

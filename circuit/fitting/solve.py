@@ -31,7 +31,7 @@ FEWEST_INDEPENDENT = 8.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solution:
-    """Where the fit ended; `inflation`: how many alike neighbouring rows of a channel count as one."""
+    """The end point of the fit; `inflation`: how many alike neighbouring rows of a channel count as one."""
 
     theta: Array
     covariance: Array

@@ -28,8 +28,8 @@ OTHER_STEP = 0.02
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Shared:
-    """What rows of a run err alike: the rows (n,) of each part among the run's, and their covariance (n, n)."""
+class CommonErrors:
+    """Common errors of a run's rows: the rows (n,) of each part among the run's, and their covariance (n, n)."""
 
     rows: tuple[Index, ...]
     covariance: tuple[Array, ...]
@@ -50,8 +50,8 @@ class Shared:
         return list(np.split(differences, np.cumsum(counts)[:-1]))
 
 
-def shared(rig: Rig, run: Run, times: Sequence[Array]) -> Shared | None:
-    """What rows of a run at `times` of each channel, on the drive's clock, err alike; None where the drive is known."""
+def shared(rig: Rig, run: Run, times: Sequence[Array]) -> CommonErrors | None:
+    """Common errors of rows at `times` of each channel, on the drive's clock; None where the drive is known."""
     if run.unknown is None or not run.unknown.any():
         return None
     responses = _responses(rig, run)
@@ -61,7 +61,7 @@ def shared(rig: Rig, run: Run, times: Sequence[Array]) -> Shared | None:
     edges = np.quantile(time, np.linspace(0.0, 1.0, parts + 1))[1:-1]
     place = np.searchsorted(edges, time, side="right")
     rows = tuple(np.flatnonzero(place == part) for part in range(parts))
-    return Shared(rows, tuple(_covariance(run, responses, time[each], channel[each]) for each in rows))
+    return CommonErrors(rows, tuple(_covariance(run, responses, time[each], channel[each]) for each in rows))
 
 
 def _responses(rig: Rig, run: Run) -> tuple[Array, list[Array]]:

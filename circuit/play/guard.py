@@ -30,7 +30,7 @@ class Stopped(RuntimeError):
 
 
 class Numbers(NamedTuple):
-    """What a guard keeps to, in °C, s and K; the command that tests the polarity is in the unit of the line."""
+    """Limits of a guard in °C, s and K; the command that tests the polarity is in the unit of the line."""
 
     low_C: float
     high_C: float
@@ -131,7 +131,7 @@ class Guard:
             self.ended_s = self.now()
 
     def now(self) -> float:
-        """Return the time in s; a clock that goes back, or is no number, would switch off every guard and stops."""
+        """Return the time in s; a clock that goes back, or is not a number, would switch off every guard and stops."""
         now_s, before_s = float(self._clock()), self._now_s
         if not before_s <= now_s < math.inf:
             self._stop(f"the clock of this computer is wrong: it reads {now_s} s after {before_s} s")

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 
 class Line(Protocol):
-    """What a guard needs of hardware; a row is whatever the line takes: V, °C, a command, or a block with its rate."""
+    """The hardware as a guard needs it; a row is what the line takes: V, °C, a command, or a block with its rate."""
 
     def open(self) -> None:
         """Make ready; nothing is put out."""

@@ -13,7 +13,7 @@ from .skin import STRATUM_CORNEUM, Layer, Skin, usual_depth_mm
 
 @dataclass(frozen=True, slots=True)
 class HeatPump:
-    """What warms and cools a display by a current: module, the origin of its numbers, heat sink, driver."""
+    """The source of a display's heat by a current: module, the origin of its numbers, heat sink, driver."""
 
     module: Peltier
     origin: ModuleOrigin
@@ -68,13 +68,13 @@ def skin_of(table: SkinTable) -> Skin:
         )
         for layer in table.layer
     )
-    horny = layers[0].name == STRATUM_CORNEUM
-    if table.depth_from == STRATUM_CORNEUM and not horny:
+    has_corneum = layers[0].name == STRATUM_CORNEUM
+    if table.depth_from == STRATUM_CORNEUM and not has_corneum:
         raise ValueError(sentence("parts.depth_from", layer=STRATUM_CORNEUM, first=layers[0].name))
     given = (table.cold_receptor_mm, table.warm_receptor_mm)
     own = table.depth_from is not None or given != (None, None)
-    depth_from = table.depth_from or ("surface" if own or not horny else STRATUM_CORNEUM)
-    corneum_mm = table.layer[0].thickness_mm if horny else 0.0
+    depth_from = table.depth_from or ("surface" if own or not has_corneum else STRATUM_CORNEUM)
+    corneum_mm = table.layer[0].thickness_mm if has_corneum else 0.0
 
     def depth_m(channel: str, given_mm: float | None) -> float:
         usual = given_mm is None and table.depth_from is None

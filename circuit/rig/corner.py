@@ -102,7 +102,7 @@ def _module(rig: Rig, seebeck: float, conductance: float, plates: float) -> Pelt
             nominal.cold_plate_J_per_K * (1.0 + plates),
         )
     except ValueError as problem:  # a share so large that nothing finite is left
-        raise RigError(f"rig {rig.name}, one corner of it: {problem}; use less") from None
+        raise RigError(f"rig {rig.name}, in one corner: {problem}; use less") from None
 
 
 def _check(rig: Rig, shares: dict[str, float], shifts: dict[str, tuple[float, float]]) -> None:
@@ -118,4 +118,4 @@ def _check(rig: Rig, shares: dict[str, float], shifts: dict[str, tuple[float, fl
         said = {"shift": signed(shifts["ambient"][0]), "deep": signed(deep), "rest": signed(rig.skin.rest_C)}
         faults.append(sentence("parts.deep", **said))
     if faults:
-        raise RigError("\n".join(f"rig {rig.name}, one corner of it: {fault}; use less" for fault in faults))
+        raise RigError("\n".join(f"rig {rig.name}, in one corner: {fault}; use less" for fault in faults))

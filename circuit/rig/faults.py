@@ -126,7 +126,7 @@ def sentence(which: str, /, **values: object) -> str:
 
 
 class Unusual(NamedTuple):
-    """What is unusual about a rig: its kind, and a sentence with what to do."""
+    """An unusual property of a rig: its kind, and a sentence with what to do."""
 
     kind: str
     text: str
@@ -138,5 +138,5 @@ class Unusual(NamedTuple):
 
 
 def unusual(kind: str, /, **values: object) -> Unusual:
-    """What is unusual, with the values that its sentence names."""
+    """An unusual property of a rig, with the values that its sentence names."""
     return Unusual(kind, sentence(f"warnings.{kind}", **values))

@@ -31,7 +31,7 @@ LEAST_APART_K = 1.0
 
 @dataclass(frozen=True, slots=True)
 class ModuleOrigin:
-    """Where the parameters of a rig's module come from, in one sentence, and warnings about them."""
+    """The origin of a module's parameters in one sentence, with warnings about them."""
 
     sentence: str
     warnings: tuple[Unusual, ...] = ()

@@ -1,4 +1,4 @@
-"""The parts of a rig besides module and skin: heat sink, driver, contact, probes."""
+"""Parts of a rig other than module or skin: heat sink, driver, contact, probes."""
 
 import re
 from dataclasses import dataclass
@@ -57,7 +57,7 @@ class Driver:
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """Where display and skin meet: area m², resistance m²·K/W."""
+    """The contact between display and skin: area m², resistance m²·K/W."""
 
     area_m2: float
     resistance_m2K_per_W: float

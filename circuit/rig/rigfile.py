@@ -124,7 +124,7 @@ class DriverTable(KeyTable):
 
 
 class ContactTable(KeyTable):
-    """Where display and skin meet."""
+    """The contact between display and skin."""
 
     area_cm2: Annotated[float, Field(ge=0.01, le=10_000)]
     resistance_m2K_per_W: Annotated[float, Field(ge=1e-6, le=1)]

@@ -121,7 +121,7 @@ class Limits:
         return min(passed, key=lambda rule: rule.severity != "hard", default=None)
 
     def to_dict(self) -> dict[str, object]:
-        """What is changed, what is loosened and why, as a sidecar holds it."""
+        """Changed and loosened limits with their reason, as a sidecar holds them."""
         return {"changed": list(self.changed), "loosened": list(self.loosened), "reason": self.reason or None}
 
 

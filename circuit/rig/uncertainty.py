@@ -32,7 +32,7 @@ def _shipped_or(most: float, key: str) -> Any:
 
 
 class Uncertainty(KeyTable):
-    """How far a rig may deviate from its file, in either direction: shares, and K for ambient and heat sink.
+    """Deviations of a rig from its file in either direction: shares, and K for ambient and heat sink.
 
     `conductance_relative` is that of the module's legs, `plates_relative` of both plates' heat capacities. `reason`
     states how it is known that an uncertainty is smaller than the shipped one.

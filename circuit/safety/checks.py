@@ -24,9 +24,9 @@ CURE_OF: dict[str, Cure] = {
 
 @dataclass(frozen=True, slots=True)
 class Before:
-    """What was played before a play, with a pause in s between plays.
+    """Plays before a play, with a pause in s between them.
 
-    `plays`: the same drive for ever (`cycle`) or `once`, another one once (`another`) or for ever (`others`), or drives
+    `plays`: the same drive repeated (`cycle`) or `once`, another one once (`another`) or repeated (`others`), or drives
     in any order, between the `warm` and the `cold` bound of which the play begins; or just `any` before it.
     """
 
@@ -87,7 +87,7 @@ class Check:
 
     @property
     def beyond(self) -> float:
-        """How far it goes beyond its limit, in its unit; negative where it stays inside."""
+        """Excess over the limit in its unit; negative inside it."""
         return self.value - self.limit if self.upper else self.limit - self.value
 
     @property
@@ -141,7 +141,7 @@ def colour_of(findings: Sequence[Check]) -> str:
 
 
 def cures_of(findings: Sequence[Check]) -> tuple[Cure, ...]:
-    """What would keep every hard limit that is exceeded: a baseline, where a first play begins beyond one."""
+    """Cures for every exceeded hard limit: a baseline, where a first play begins beyond one."""
     hard = hard_of(findings)
     if any(check.unit == "°C" and check.since_s == 0.0 and check.run.before is None for check in hard):
         return ("baseline",)
@@ -273,7 +273,7 @@ class SingleFault:
 
 @dataclass(frozen=True, slots=True)
 class Demands:
-    """What the hardware must prevent so that one drive stays safe with a single fault.
+    """Demands on the hardware that keep one drive safe with a single fault.
 
     `watchdog_s`: a stuck current must be cut after this time; 60 where a minute is safe, 0 where no time is.
     `rest_before_first_play_s`: the rest must be held so long on a display that was without power; None: 10 min do not

@@ -1,9 +1,9 @@
 """A module that a current drives, in all corners of its rig, as a plant of the gate.
 
-The bounds of repetition hold for temperatures; a rate depends on differences between nodes, and no bound on each node
-is one on it. It is taken in plays instead: each drive after a play of each from rest, and after one of its steady
-cycle. After its own play the pause may also be longer than the shortest by each of LONGER_S, since the display returns
-to rest sooner than the skin.
+The bounds of repetition hold for temperatures only, not for rates, which depend on differences between nodes. Rates
+are therefore checked by simulation: each drive is played after every other drive, starting from rest and from its
+steady cycle. After its own play the pause may also be longer than the shortest by each of LONGER_S, since the display
+returns to rest sooner than the skin.
 """
 
 from __future__ import annotations
@@ -227,7 +227,7 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         tallies: Sequence[list[Tally]],
         shortest_s: float | None,
     ) -> tuple[float | None, list[tuple[Demands, tuple[Check, ...]]]]:
-        """What prevents a host that stops, a driver that is stuck, and faults of a first play."""
+        """Demands against a host that stops, a driver that is stuck, and faults of a first play."""
         from .demanded import demanded
 
         return demanded(self, [single for (single,) in singles], recovered_s, repeating, shortest_s)

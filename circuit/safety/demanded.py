@@ -75,7 +75,7 @@ def demanded(
     numbers, within = range(len(singles)), (PRACTICAL_S, PRACTICAL_S)
 
     def found(pause_s: float, needed: Sequence[Span] | None = None) -> list[_InPlays] | None:
-        """What each drive needs; None as soon as one needs something quicker than in `needed`."""
+        """Demands of each drive; None as soon as one needs something quicker than in `needed`."""
         at_C, faulty, demands = ends(pause_s, beyond_K), after(pause_s), {}
         for number in sorted(numbers, key=lambda number: not (needed and any(needed[number]))):  # may not suffice first
             one = demands[number] = _in_plays(faulty[number], hardest[number], at_C)
@@ -113,7 +113,7 @@ def demanded(
 
 @dataclass(frozen=True, slots=True)
 class _InPlays:
-    """What prevents a host that hangs and a driver stuck at its limit in plays, with both faults."""
+    """Demands against a host that hangs and a driver stuck at its limit in plays, with both faults."""
 
     watchdog_s: float
     cut_off: CutOff
@@ -152,7 +152,7 @@ def _in_plays(faulty: Faulty, hardest: list[int], ends_C: Span) -> _InPlays:
 
 
 def _resting(faulty: Faulty, ends_C: Span) -> tuple[CutOff, SingleFault]:
-    """What prevents harm where the driver gets stuck before a play, between the bounds or without power before."""
+    """Demands against a driver that gets stuck before a play, between the bounds or without power before."""
     ensemble, off = faulty.ensemble, faulty.ensemble.at_rest(0.0)
     test_A = testing_A(ensemble)
     unpowered = (off, faulty.rest_A), (ensemble.rest(test_A, off, TEST_S), test_A)
@@ -167,7 +167,7 @@ def _demands(
     first: tuple[float | None, Sequence[Check]],
     pause_s: float | None,
 ) -> Demands:
-    """What the hardware must prevent in a drive; `first`: the rest before a first play, and what that does without."""
+    """Demands of a drive on the hardware; `first`: the rest before a first play, and its effect."""
     ensemble, limits = faulty.ensemble, faulty.limits
     cut_off, stuck = min((found.cut_off, found.stuck), resting, key=lambda each: each[0].react_within_s)
     polarity, swapped = polarity_check(faulty)

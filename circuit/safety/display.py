@@ -169,7 +169,7 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         self, plays: Sequence[DisplayCourse], bounds: tuple[list[Array], list[Array]]
     ) -> tuple[list[Array], list[Array]]:
         """Lump by lump: no power, instants of plays, and control lost since."""
-        found = []
+        bounding = []
         for bound, warm in zip(bounds, (True, False), strict=True):
             most = np.maximum if warm else np.minimum
             lumps = most(self._lumps(self.farthest(plays, bound, warm)), self._lumps(self._none()))
@@ -178,19 +178,19 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
                  for modes, each in zip(self.insulated, lumps, strict=True)]
                 for time_s in OFF_ROWS_S
             ]  # fmt: skip
-            found.append(self._modes(most.reduce([lumps, *map(np.array, lost)])))
-        return found[0], found[1]
+            bounding.append(self._modes(most.reduce([lumps, *map(np.array, lost)])))
+        return bounding[0], bounding[1]
 
     def farthest(self, plays: Sequence[DisplayCourse], state: Sequence[Array], warm: bool) -> list[Array]:
         """States warmer (or colder), lump by lump, than at instants of plays from states, and before them."""
-        side, found = 1.0 if warm else -1.0, self._lumps(state)
+        side, extreme = 1.0 if warm else -1.0, self._lumps(state)
         for play in plays:
             last, now = len(play.display_C) - 1, list(state)
             ends = {int((side * play.display_C[::-1]).argmax()), *range(0, last, -(-last // INSTANTS))}
             for begin, end in itertools.pairwise(sorted({0, last, *(last - k for k in ends)})):
                 ((_, now),) = self.play(replace(play, display_C=play.display_C[begin : end + 1]), now)
-                found = side * np.maximum(side * found, side * self._lumps(now))
-        return self._modes(found)
+                extreme = side * np.maximum(side * extreme, side * self._lumps(now))
+        return self._modes(extreme)
 
     def demanded(
         self,
@@ -200,7 +200,7 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         tallies: Sequence[list[Tally]],
         shortest_s: float | None,
     ) -> tuple[float | None, list[tuple[Demands, tuple[Check, ...]]]]:
-        """What prevents set-points that hang, and a loop that runs to the end of its range or stays anywhere in it."""
+        """Demands against set-points that hang, and a loop that runs to an end of its range or stays within it."""
         pause_s = LONGEST_PAUSE_S if shortest_s is None else shortest_s
         beginning = Beginning.of(repeating, pause_s, max(recovered_s))
         starts = cache(beginning.after)
@@ -227,7 +227,7 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         ]
 
     def _faults(self, repeating: Repeating[DisplayCourse, list[Array]], starts: Starts[list[Array]]) -> list[_Faults]:
-        found = []
+        faults = []
         for ways in repeating.drives:
             warm, cold = (
                 self.farthest(ways, bound, side) for bound, side in zip(starts.bounds, (True, False), strict=True)
@@ -238,8 +238,8 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
                 [(low, self._held_s(repeating.limits, low, cold)), (high, self._held_s(repeating.limits, high, warm))]
                 for low, high in ends
             )
-            found.append(_Faults(hangs, stuck))
-        return found
+            faults.append(_Faults(hangs, stuck))
+        return faults
 
     def _held_s(self, limits: Limits, level_C: float, state: Sequence[Array]) -> float:
         """Time in s for which a display may be held at a level until a hard temperature limit is passed, 60 at most."""
@@ -273,7 +273,7 @@ class _Faults:
         return hang, stuck
 
     def demands(self, ends_C: Span, pause_s: float | None, rest_s: float | None, at_once: Sequence[Check]) -> Demands:
-        """What the device itself must prevent, with a cut-off at two temperatures."""
+        """Demands on the device itself, with a cut-off at two temperatures."""
         watchdog, react = (min(time for _, time in each) for each in (self.hangs, self.stuck))
         watchdog = watchdog if watchdog >= ENDING_S else math.floor(100.0 * MARGIN * watchdog) / 100.0
         cut = CutOff(*ends_C, math.floor(1000.0 * MARGIN * react) / 1000.0)

@@ -155,7 +155,7 @@ class Ensemble:
     def watch(
         self, current_A: float | Array, state: State, times_s: Array, rigs: Index, columns: Sequence[str] = WATCHED
     ) -> Array:
-        """What `hold` returns first, or some columns of it, where the last states are not needed."""
+        """The first result of `hold`, or some of its columns, where the last states are not needed."""
         if self.ideal:
             return self.modes(current_A).run(rigs, state.nodes_C, times_s, columns)
         return self.hold(current_A, state, times_s, rigs)[0][[WATCHED.index(name) for name in columns]]

@@ -94,7 +94,7 @@ class Gate(Judged):
 
     @property
     def demanded(self) -> dict[str, object]:
-        """What the hardware must prevent, in the form of sidecars and players."""
+        """Demands on the hardware, in the form of sidecars and players."""
         return self.demands.to_dict()
 
     def to_dict(self) -> dict[str, object]:

@@ -1,4 +1,4 @@
-"""The interface between the gate and a module or display in all corners, also the result of one play."""
+"""The interface between the gate and a module or display in all corners; also the result of one play."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Stretch = tuple[Array, Array]
 
 
 class GatePlay(Protocol):
-    """What is played: currents, or temperatures of a display."""
+    """A play for the gate: currents, or temperatures of a display."""
 
     @property
     def way(self) -> str:
@@ -101,7 +101,7 @@ class Plant(ABC, Generic[Played, States]):
 
     @abstractmethod
     def let_go(self, play: Played, state: States) -> Iterable[tuple[Future, ...]]:
-        """What follows a play in each of the endings."""
+        """Continuations of a play by each of the endings."""
 
     @abstractmethod
     def cycle(self, play: Played, pause_s: float) -> States:
@@ -150,7 +150,7 @@ class Plant(ABC, Generic[Played, States]):
 
     @property
     def drift_C(self) -> float | None:
-        """Skin of the rig as given in °C without current for ever; None where there is no current."""
+        """Steady skin temperature in °C of the rig as given, without current; None where there is no current."""
         return None
 
 

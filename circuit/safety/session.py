@@ -1,6 +1,4 @@
-"""A session: icons in sequence as one run, with a worst-case verdict and one per play on the rig as given; its plan,
-given in a file or shuffled.
-"""
+"""A session: icons in sequence as one run, with verdicts on the whole and on each play; also its plan."""
 
 from __future__ import annotations
 

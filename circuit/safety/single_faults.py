@@ -115,7 +115,7 @@ class Faulty:
         return [int(corner) for corner in np.unique(moments.rigs[lanes])]
 
     def watchdog_s(self, moments: Moments | None = None) -> tuple[float, SingleFault]:
-        """How long a stuck current may last before it is cut, and the effect of a little longer."""
+        """The longest time before a stuck current must be cut, and the effect of a little longer."""
         moments = moments or self.moments()
         safe = bisect_left(HANGS_S, 1, key=lambda time_s: int(self._hung_K(moments, time_s)[1].max() > 0.0))
         after, tried_s = (0.0, *HANGS_S)[safe], HANGS_S[min(safe, len(HANGS_S) - 1)]
@@ -249,7 +249,7 @@ def _late_s(moments: Moments, display: Array, low: float, high: float, reaction_
 
 
 def _passed(limits: Limits, values: Array) -> tuple[Harm | None, Array]:
-    """What passes a hard temperature limit the farthest, and how far each lane does in K; negative inside."""
+    """The limit that is passed the farthest, and by how much in each lane in K; negative inside."""
     farthest, harm = np.full(values.shape[1], -np.inf), None
     columns = {
         "skin surface": "skin_C",

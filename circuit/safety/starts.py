@@ -37,7 +37,7 @@ class Starts(Generic[States]):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Beginning(Generic[Played, States]):
-    """How drives may begin: by a rest of `recovery_s` at most from states `left` (warm, cold), or after other plays."""
+    """Possible starts of drives: after `recovery_s` of rest at most from `left` (warm, cold), or after other plays."""
 
     repeating: Repeating[Played, States]
     left: tuple[States, States]
@@ -89,7 +89,7 @@ class Beginning(Generic[Played, States]):
         return rest_s
 
     def unpowered(self, number: int, rest_s: float) -> tuple[Check, ...]:
-        """What a drive passes after a rest on a display that was without power, at worst of its ways."""
+        """The worst excess of a drive after a rest on a display that was without power."""
         plant, checks = self.repeating.plant, []
         for play in self.repeating.drives[number]:
             tally = Tally(self.repeating.limits, plant.corners, Scenario(way=play.way))

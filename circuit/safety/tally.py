@@ -1,5 +1,4 @@
-"""A running check of simulations against every rule of safety, which may arrive in stretches of time; and the thermal
-exposure of tissue: equivalent minutes at 43 °C, and the Henriques burn integral.
+"""A running check of simulations against every rule of safety; also the thermal exposure of tissue (CEM43, Henriques).
 
 Temperature is taken as linear between rows. CEM43 is then exact. The Henriques rate over one row is expanded about its
 middle; rows that differ by more than 0.05 K are cut into pieces that do not: under 1e-8 of the integral is lost.
@@ -199,7 +198,7 @@ class Tally:
         return tuple(dict.fromkeys(self._worst()[self._present & self._rules.hard].tolist()))
 
     def beyond(self) -> Array:
-        """How far each rule is exceeded in each lane (rules, lanes), as `checks.beyond` of its check."""
+        """Excess over each rule in each lane (rules, lanes), as `checks.beyond` of its check."""
         nothing = np.array([check.value for check in map(self._nothing, self.limits.rules)])
         limit = np.where(self._present[:, np.newaxis], self._limits(), self._rules.limit[:, np.newaxis])
         value = np.where(self._present[:, np.newaxis], self._value, nothing[:, np.newaxis])

@@ -91,7 +91,7 @@ def hard_reason(findings: Sequence[Check]) -> str | None:
 
 
 def more_and_cure(findings: Sequence[Check]) -> str:
-    """What follows the reason of a refusal: every other hard limit exceeded, and what would cure all of them."""
+    """The end of a refusal's text: every other exceeded hard limit, and what would cure all of them."""
     others = [
         f"{check.quantity} {value}{_unit(check)} (limit {limit})"
         for check in hard_of(findings)[1:]
@@ -124,7 +124,7 @@ def _unit(check: Check) -> str:
 
 @cache
 def _fault_words() -> dict[str, Any]:
-    """What each kind of fault is called, what it does, and what prevents its harm."""
+    """The name of each kind of fault, its effect, and what prevents its harm."""
     return tomllib.loads((resources.files("thermicon.circuit") / "data" / "fault-words.toml").read_text("utf-8"))
 
 
@@ -137,7 +137,7 @@ def fault_table(fault: SingleFault) -> dict[str, object]:
 
 
 def fault_cure(fault: SingleFault) -> str:
-    """What prevents the harm of a single fault, without the reason."""
+    """The prevention of a single fault's harm, without the reason."""
     return _prevented(fault)[1]
 
 

@@ -62,7 +62,7 @@ class Bank:
 
     @property
     def arrays(self) -> tuple[Index, Array, Array, Array, Array]:
-        """What the kernels take of a bank."""
+        """The arrays of a bank for the kernels."""
         return self.count, self.plates, self.capacity, self.conductance, self.perfusion
 
     def states(self, states: Sequence[Array]) -> Array:

@@ -47,7 +47,7 @@ def baseline_C(icon: Icon, rig: Rig) -> float:
 
 
 def target_at(icon: Icon, start: float, times_s: Array) -> Array:
-    """What the cue prescribes at times in s: °C, or A under current control; the last level is kept."""
+    """The prescribed level at times in s: °C, or A under current control; the last level is kept."""
     corners = icon.corners(start)
     return np.asarray(np.interp(times_s, corners.time_s, corners.value), dtype=np.float64)
 

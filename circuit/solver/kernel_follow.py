@@ -1,4 +1,4 @@
-"""Compiled inverse: the current that makes the circuit follow a target, and a lab's PID loop on a display thermistor.
+"""Compiled inverse: the current that makes the circuit follow a target; also a lab's PID loop on a display thermistor.
 
 Both find the current that is held over each period of the driver; the state moves by the rule of `kernel`.
 """

@@ -126,7 +126,7 @@ class ConstantCurrent:
         return np.concatenate([moved, nodes_C[:, -1:]], axis=1)
 
     def passage(self, time_s: float) -> tuple[Array, Array]:
-        """What a time in s does to the nodes above the deep one: matrix (r, m, m) and constant (r, m)."""
+        """The change of the nodes above the deep one in a time in s: matrix (r, m, m) and constant (r, m)."""
         decay = np.exp(np.clip(-self.rate_per_s * time_s, None, FARTHEST))
         matrix = (self.from_modes * decay[:, np.newaxis, :]) @ self.to_modes
         return matrix, self.rest_C - np.einsum("rkm,rm->rk", matrix, self.rest_C)
@@ -348,7 +348,7 @@ def shown(setpoint_C: Array, step_s: float, lag_s: float = 0.0, slew_K_per_s: fl
 
 
 def step_weights(rate_per_s: Array, step_s: float) -> tuple[Array, Array, Array]:
-    """What a mode keeps over a step, and the weights in s of a linear forcing at its beginning and its end."""
+    """The decay of a mode over a step, and the weights in s of a linear forcing at its beginning and its end."""
     x = rate_per_s * step_s
     keep = np.exp(-x)
     safe = np.where(x < SMALL, 1.0, x)

@@ -35,7 +35,7 @@ GROUPS = {
 
 
 def experiments_table() -> str:
-    """What was conditioned on: one row an experiment."""
+    """What was conditioned on: one row per experiment."""
     counts, known = Counter(row.experiment for row in load_rows()), load_evidence().experiments
     lines = [
         (key, known[key].title, known[key].citation, known[key].licence, known[key].method, count)
@@ -127,7 +127,7 @@ def predicted_table() -> str:
 
 
 def people_table() -> str:
-    """How virtual people differ: one row a column of `People`."""
+    """How virtual people differ: one row per column of `People`."""
     rows = []
     for name, record in people_records().items():
         basis = f"assumed: {record.source}" if record.use == "assumed" else record.source

@@ -100,7 +100,7 @@ def meant(cell: str, names: Iterable[str]) -> tuple[str, Unit | None] | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Named:
+class NamedHeader:
     """A header in our names where they are known: what those that were renamed are called, and what was ambiguous."""
 
     header: tuple[str, ...]
@@ -108,7 +108,7 @@ class Named:
     doubtful: Mapping[str, tuple[str, ...]]
 
 
-def named(cells: Sequence[str], names: Iterable[str], theirs: Mapping[str, str]) -> Named:
+def named(cells: Sequence[str], names: Iterable[str], theirs: Mapping[str, str]) -> NamedHeader:
     """Read a header: ours, what ``theirs`` gives, what means one of ours; of two that may, the one with a unit."""
     renamed, doubtful = dict[str, tuple[str, Unit]](), dict[str, tuple[str, ...]]()
     places = {name: [(cells.index(own), parted(own)[1])] for name, own in theirs.items() if own in cells}
@@ -125,4 +125,4 @@ def named(cells: Sequence[str], names: Iterable[str], theirs: Mapping[str, str])
             new[at], renamed[name] = name, (cells[at], unit or Unit(""))
         else:
             doubtful[name] = tuple(cells[at] for at, _ in several)
-    return Named(tuple(new), renamed, doubtful)
+    return NamedHeader(tuple(new), renamed, doubtful)

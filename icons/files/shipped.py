@@ -1,4 +1,4 @@
-"""Input files, read with a limit of size, and the icon sets that ship with the package."""
+"""Input files, read with a limit of size; also the icon sets that ship with the package."""
 
 import errno
 import stat
@@ -29,7 +29,7 @@ FileKind = Literal["folder", "device", "pipe", "socket"]
 
 
 class NotRegular(Exception):
-    """What is at a path cannot be read as a file; ``kind`` says what it is."""
+    """A path that cannot be read as a file; ``kind`` says what it is."""
 
     def __init__(self, kind: FileKind) -> None:
         super().__init__(f"this is a {kind}, not a file")
@@ -64,7 +64,7 @@ def read_limited(path: Path, most_bytes: int) -> bytes:
 
 
 def bytes_of(path: Path, what: str, suffix: str, most_bytes: int, smaller: str) -> bytes | None:
-    """What is in a file of icons, or None without one of this name; CueErrors in words of `what` it should hold."""
+    """Content of a file of icons, or None if there is none of this name; CueErrors name `what` it should hold."""
     try:
         return read_limited(path, most_bytes)
     except NotRegular as found:
@@ -93,8 +93,8 @@ def _kind(mode: int) -> FileKind | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Shipped:
-    """What the library says of a set; members of families count, and are not made."""
+class ShippedSet:
+    """The library's entry of a set; members of families count, and are not made."""
 
     name: str
     icons: int
@@ -110,17 +110,17 @@ class Library(Mapping[str, IconSet]):
     sets: tuple[tuple[str, IconSet], ...]
 
     @property
-    def entries(self) -> tuple[Shipped, ...]:
+    def entries(self) -> tuple[ShippedSet, ...]:
         """Name, number of icons, title, intent and source of every set."""
         found = []
         for name, icons in self.sets:
             means = dict.fromkeys(filter(None, (entry.metadata.means for entry in icons.entries)))
             source = "; ".join(filter(None, (icons.metadata.by, icons.metadata.doi))) or "not stated"
-            found.append(Shipped(name, len(icons), icons.title, icons.metadata.means or "; ".join(means), source))
+            found.append(ShippedSet(name, len(icons), icons.title, icons.metadata.means or "; ".join(means), source))
         return tuple(found)
 
     def to_frame(self) -> "pd.DataFrame":
-        """Return a table with a row a set and the columns name, icons, title, intent, source."""
+        """Return a table with one row per set and the columns name, icons, title, intent, source."""
         import pandas as pd
 
         return pd.DataFrame(list(self.entries))
@@ -240,7 +240,7 @@ def icons_of(icons: Icons) -> tuple[Icon, ...]:
 
 
 def by_name(icons: Icons) -> dict[str, Icon]:
-    """What `icons_of` returns, each by its name; an `InputError` where two have one name."""
+    """The icons of `icons_of`, each by its name; an `InputError` where two have one name."""
     known: dict[str, Icon] = {}
     for icon in icons_of(icons):
         if icon.name in known:

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from ..model.arguments import InputError
-from .column_names import Named, meant, named, unit_of
+from .column_names import NamedHeader, meant, named, unit_of
 from .table_text import table_text
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ class Table:
     lines: tuple[int, ...]
     fault: Fault
     mark: str
-    names: Named
+    names: NamedHeader
     notes: tuple[str, ...]
     lost: Mapping[str, str]
 
@@ -79,7 +79,7 @@ class Table:
         return (row[at] if at < len(row) else "" for row in self.rows)
 
     def records(self, names: Sequence[str]) -> Iterator[tuple[int, dict[str, str]]]:
-        """Line and cells by name of each row, of those columns that there are."""
+        """Line number of each row, with its cells by the names of the columns present."""
         there = [name for name in names if name in self.header]
         for line, *cells in zip(self.lines, *map(self.texts, there), strict=True):
             yield line, dict(zip(there, cells, strict=True))
@@ -115,7 +115,7 @@ class Table:
             theirs = self.names.renamed.get(name, (name,))[0]
             return f"write {found[1]}; units belong in the names of the columns, as in {theirs} [{found[2]}]"
         alone = len(self.header) > 1 and set(self.rows[row]) <= {"", cell}
-        return "remove this line, which is no row of the table" if cell and alone else ""
+        return "remove this line, which is not a row of the table" if cell and alone else ""
 
 
 def as_number(cell: str, mark: str = ",") -> float:
@@ -205,7 +205,7 @@ def read_table(
 
 
 def _line_of_names(text: str, names: Sequence[str], theirs: Mapping[str, str]) -> tuple[int, str, int]:
-    """How many lines stand above the names, what separates the cells, and how many of those lines say something."""
+    """The number of lines above the names, the separator of cells, and how many of those lines have text."""
     lines = [line[:LONGEST_LINE] for line in itertools.islice(io.StringIO(text), MOST_ABOVE)]
     head = max((at for at, line in enumerate(lines) if line.startswith("***End_of_Header***")), default=-1)
     first = next((at for at, line in enumerate(lines) if line.strip() and not line.startswith(ASIDE)), len(lines))

@@ -56,7 +56,7 @@ def errors(values: Array, possible: tuple[float, float], widest: tuple[float, fl
 
 
 def unit_fault(name: str, values: Array) -> tuple[str, str] | None:
-    """What of a column's numbers cannot be in the unit of its name, and the cure; None where they may be."""
+    """The numbers of a column that cannot be in the unit of its name, with a cure; None where all may be."""
     import numpy as np
 
     there = values[np.isfinite(values)]

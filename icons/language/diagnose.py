@@ -34,7 +34,7 @@ def _lacking(case: FailedStatement, finding: Finding) -> Finding:
 
 
 def not_yet(case: FailedStatement) -> Finding | None:
-    """What the language reserves, or does not have on purpose."""
+    """Words that the language reserves, or does not have on purpose."""
     bad = case.bad
     if case.first in NOT_YET and case.index == 0:
         help = NOT_YET[case.first]

@@ -14,7 +14,7 @@ _OPENERS, _CLOSERS = ("[", "{", "<"), ("]", "}", ">")
 
 
 def family(case: FailedStatement) -> Finding | None:
-    """What does not fit between the parentheses of a family, or around them."""
+    """Faults between the parentheses of a family, or around them."""
     bad = case.bad
     if not case.listing:
         return _around(case)

@@ -41,7 +41,7 @@ def read(source: Source) -> tuple["Tree[Any]", tuple[Finding, ...], int]:
 
 
 def other_format(source: Source) -> tuple[str, str] | None:
-    """What a text is that is plainly of another format, and what to do: told once instead of line by line."""
+    """The format of a text that is clearly not a cue, with advice, reported once instead of line by line."""
     rows = list(islice((line for line in source.lines if line.strip() and not line.startswith(("#", "sep="))), 2))
     if not rows:
         return None

@@ -91,7 +91,7 @@ def checked(function: F) -> F:
         for name, value in (*values, *given.items()):
             if name not in hints and name in given:
                 now = f"is called {RENAMED[name]}" if name in RENAMED else did_you_mean(name, hints)
-                raise InputError(f"{place}: {name} {'' if name in RENAMED else 'is no argument; '}{now}")
+                raise InputError(f"{place}: {name} {'' if name in RENAMED else 'is not an argument; '}{now}")
             if not _fits(value, hints.get(name, Any)):
                 raise InputError(f"{place}: {name} takes {_words(hints[name])}, {_refused(name, value, hints[name])}")
 
@@ -119,7 +119,7 @@ class _Names(dict[str, Any]):
 
 
 def _hints(function: Any) -> dict[str, Any]:
-    """What each argument takes; of keywords that a typed dictionary describes, each."""
+    """The annotation of each argument; of keywords that a typed dictionary describes, each."""
     found, names = dict[str, Any](), _Names({**vars(builtins), **vars(sys.modules[function.__module__])})
     for name, text in function.__annotations__.items():
         text = getattr(text, "__forward_arg__", text)
@@ -187,7 +187,7 @@ def _a(name: str) -> str:
 
 
 def _refused(name: str, value: Any, hint: Any) -> str:
-    """What was given instead; of a list, its first item that does not fit."""
+    """The value that was given instead; of a list, its first item that does not fit."""
     inner = [get_args(each)[0] for each in (hint, *get_args(hint)) if get_origin(each) in (Sequence, Iterable, tuple)]
     for place, each in enumerate(value if inner and isinstance(value, list | tuple) else ()):
         if not _fits(each, inner[0]):

@@ -48,7 +48,7 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class Survey:
-    """What a body does: its problems, duration (s), extreme levels (°C or A) and steepest slope (K/s or A/s)."""
+    """A summary of a body: its problems, duration (s), extreme levels (°C or A), steepest slope (K/s or A/s)."""
 
     problems: list[Problem]
     duration_s: float = 0.0
@@ -76,7 +76,7 @@ def corner_count(body: Sequence[Statement | Broken], known: dict[int, int] | Non
 def survey(
     body: Sequence[Statement | Broken], control: Control, rest: Fraction | None, played: Played | None = None
 ) -> Survey:
-    """What a body does from the level ``rest`` (None: not known) on; ``played`` keeps what played icons do."""
+    """The summary of a body from the level ``rest`` (None: not known) on; ``played`` caches played icons."""
     if (corners := corner_count(body)) > MOST_CORNERS:
         worst = max(
             (part for part in body if isinstance(part, Repeat | Wave | Play)),

@@ -82,7 +82,7 @@ def text_fault(text: str) -> str | None:
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """What icons prescribe (a temperature in °C, or under ``current`` a current in A), and where on the body.
+    """The controlled quantity (a temperature in °C, or under ``current`` a current in A), and the site on the body.
 
     ``baseline_C`` is the temperature from which icons start, −10 to 60 °C; None: that of the rig. ``site`` is a name,
     such as ``thenar``. Raises ValueError for anything else.
@@ -106,7 +106,7 @@ class Context:
 
 @dataclass(frozen=True, slots=True)
 class Metadata:
-    """What is known about an icon or a set: what it ``means`` to say, by whom, DOI, licence, words for finding it.
+    """Facts about an icon or a set: what it ``means``, author, DOI, licence, words for finding it.
 
     Raises ValueError for an empty text, control characters, and a tag with a comma.
     """

@@ -71,7 +71,7 @@ class Family(Drawn):
         for name in ("parameters", "template"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         object.__setattr__(self, "slots", tuple(sorted(self.slots, key=lambda slot: (slot.path, slot.field))))
-        wrong = name_fault(self.name) or ("a member's name is no family's name" if "_" in self.name else None)
+        wrong = name_fault(self.name) or ("a family cannot have a member's name" if "_" in self.name else None)
         if wrong:
             raise ValueError(f"family: {wrong}")
         if wrong := self._fault():

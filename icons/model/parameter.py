@@ -23,7 +23,7 @@ _KINDS: dict[str, Kind] = {
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Parameter:
-    """What varies in a family: ``listed`` values, or a ``span`` of (low, high, step), as numbers in ``unit``.
+    """A parameter of a family: ``listed`` values, or a ``span`` of (low, high, step), as numbers in ``unit``.
 
     The unit is one of the language's (``degC`` becomes ``°C``), or ``""`` for a count. A span includes both ends, and
     its step must lead from one to the other. Raises ValueError for a bad name or unit, no value, one value twice, or a
@@ -125,7 +125,7 @@ def span_fault(low: float, high: float, step: float) -> str | None:
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """Where a parameter stands: the path of the statement (places, through repeats), its field, the name."""
+    """The place of a parameter: the path of the statement (places, through repeats), its field, the name."""
 
     path: Path
     field: str

@@ -197,7 +197,7 @@ class Play:
 
 @dataclass(frozen=True, slots=True)
 class Broken:
-    """Stands for a statement that could not be read, while the rest of a file is checked; no icon holds one."""
+    """A placeholder for a statement that could not be read while a file is checked; no icon holds one."""
 
     span: Span = field(default=None, compare=False, repr=False)
 

@@ -42,7 +42,7 @@ _TABLES = tomllib.loads(resources.files("thermicon.icons").joinpath("data/words.
 
 
 def _meant(name: str) -> dict[str, str]:
-    """What people write instead, by itself, from lists of it by what is meant."""
+    """Other words that people write, each listed under its meaning."""
     return {written: meant for meant, listed in _TABLES[name].items() for written in listed.split()}
 
 

@@ -1,4 +1,4 @@
-"""``thermicon check``: every error in some cue files, or one line per file; ``--fix`` formats them."""
+"""``thermicon check``: the errors of cue files, or one line per file."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from thermicon.icons.atomic import OutputError, complete_or_absent
 from thermicon.icons.number_text import number, span
 
 from ..files.outputs import check_output
-from ..messages import Missing, fail, note, usage
+from ..messages import MissingArgument, fail, note, usage
 from .options import flag, opt
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def check_command(
         explain_error(explain)
         return
     if not files:
-        raise Missing("argument 'FILE...'")
+        raise MissingArgument("argument 'FILE...'")
     if fix:
         format_files(files)
     check(files)

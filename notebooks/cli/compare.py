@@ -1,4 +1,4 @@
-"""``thermicon compare``: two rigs, icons, sets, or a trace and a log, as one table of differences and one figure."""
+"""``thermicon compare``: two rigs, icons, sets or curves as one table of differences with a figure."""
 
 from __future__ import annotations
 

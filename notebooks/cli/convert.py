@@ -1,4 +1,4 @@
-"""``thermicon convert``: icons as cue text or JSON, and recordings as icons."""
+"""``thermicon convert``: icons as cue text or JSON, recordings as icons."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def convert_command(
         typer.Option(help="For a table: whether skin or display temperatures were recorded."),
     ] = None,
 ) -> None:
-    """Write icons as a cue file or, for other programs, as JSON, as the ending says.
+    """Convert icons to a cue file or to JSON; the file ending decides.
 
     JSON keeps everything except comments. A recording (a table) becomes an icon of a few straight pieces.
     """

@@ -1,4 +1,4 @@
-"""``thermicon doctor``: whether the installation is sound, each check on its own, and what cures it where it is not."""
+"""``thermicon doctor``: independent checks of the installation, each with its cure."""
 
 import json as json_text
 import platform

@@ -17,7 +17,7 @@ from thermicon.icons.model.arguments import advised
 from thermicon.icons.number_text import number
 
 from ..files.exporting import felt_in, others
-from ..messages import BAD_INPUT, DEFAULT_RIG, OPTIONS, REFUSED, Missing, note, progress_bar, usage
+from ..messages import BAD_INPUT, DEFAULT_RIG, OPTIONS, REFUSED, MissingArgument, note, progress_bar, usage
 from ..report.blocks import grid
 from ..report.gate_words import CAUTION, gate_words, spread_text, steps_of, warning_lines
 from ..report.terminal import show
@@ -72,11 +72,11 @@ def export_command(
         verify_folder(verify)
         return
     if file is None:
-        raise Missing("argument 'FILE'")
+        raise MissingArgument("argument 'FILE'")
     if to is None:
-        raise Missing("option '--to'")
+        raise MissingArgument("option '--to'")
     if folder is None:
-        raise Missing("option '-o' / '--output'")
+        raise MissingArgument("option '-o' / '--output'")
     from thermicon.circuit import export
     from thermicon.circuit.delivery.formats import load_format
     from thermicon.circuit.delivery.pack import check_names
@@ -132,7 +132,7 @@ def report_icons(ready: Sequence[Prepared]) -> None:
 
 
 def icon_line(one: Prepared) -> str:
-    """How an icon is played and how far that is from the design."""
+    """One line on an icon's play and its deviation from the design."""
     delivery = one.delivery
     receptors = [each for each in one.deviation.places if "receptor" in each.place]
     largest = 1e3 * max(abs(each.largest_K) for each in receptors)

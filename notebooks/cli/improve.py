@@ -214,7 +214,7 @@ def _roughly(icons: IconSet, rig: Rig, how: dict[str, Any]) -> str:
 
 
 def objective_of(goal: Goal | None) -> Objective:
-    """What a goal wants most of: the worst pair, unless it is about the proportion correct or bits."""
+    """The objective of a goal: the worst pair, unless it is about the proportion correct or bits."""
     wanted = [name for name in ("correct", "bits") if goal is not None and goal.of(name) is not None]
     return "worst" if not wanted else "correct" if wanted[0] == "correct" else "bits"
 

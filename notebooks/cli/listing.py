@@ -1,4 +1,4 @@
-"""``thermicon list``: what is shipped, how it is cited, and copies of it to start from."""
+"""``thermicon list``: shipped sets, rigs or records, with citations or copies to start from."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What commands share: groups of options, cue files as input, and files as output.
+"""Options shared by the commands, with cue files as input or files as output.
 
 A group checks itself, loads what it names, and knows its words again. A command takes groups as arguments; `flat` lays
 their options out beside its own for typer.
@@ -108,7 +108,7 @@ class Options:
     """A group of options: a frozen dataclass whose fields carry their options."""
 
     def words(self, *, paths: bool = False) -> list[str]:
-        """What repeats the group on a command line: options other than the default; paths as given, or names alone."""
+        """Words that repeat the group on a command line: options but defaults; paths as given, or names alone."""
         own: tuple[Field[Any], ...] = fields(self)  # type: ignore[arg-type]
         words: list[str] = []
         for field in own:
@@ -156,16 +156,16 @@ class RigOptions(Options):
 
 @dataclass(frozen=True)
 class ObserverOptions(Options):
-    """Who feels and remembers icons, and what of them is the same for all people."""
+    """Options about the virtual people who feel and remember icons."""
 
     seed: Seed = 0
     tracking: Annotated[
         Literal["replay", "display", "ideal"] | None,
         typer.Option(
-            help="What all people receive alike: current, display or skin temperature.  [default: by control]"
+            help="What every virtual person receives: same current, display or skin temperature.  [default: by control]"
         ),
     ] = None
-    memory: Annotated[Literal["episodes", "naming"], typer.Option(help="How icons are remembered.")] = "episodes"
+    memory: Annotated[Literal["episodes", "naming"], typer.Option(help="Form of memory.")] = "episodes"
     observer: Annotated[
         Path | None,
         opt(
@@ -202,7 +202,7 @@ class CrowdOptions(ObserverOptions):
         return {"people": self.people, **super().asked}
 
     def draws(self, model: ObserverModel) -> int:
-        """How many draws to use: as many as were asked for, or the usual number, or as many as there are."""
+        """The number of draws: as many as were asked for, or the usual number, or as many as there are."""
         from thermicon.perception.identification.laboratory import DRAWS
 
         return check_draws(model, self.intervals, "--intervals", DRAWS)
@@ -226,7 +226,7 @@ class FigureOptions(Options):
 
     @property
     def look(self) -> Look:
-        """How the figure is drawn."""
+        """The look of the figure."""
         return SCREEN if self.paper is None else Look(read_width_mm(self.paper))
 
     def write_set(self, ranking: Ranking) -> None:
@@ -282,7 +282,7 @@ def read_set(files: Sequence[str]) -> IconSet:
 
 
 def theirs_of(columns: Sequence[str] | None) -> dict[str, str]:
-    """What a table calls our columns, by ``--column NAME=THEIRS``."""
+    """A table's names for our columns, by ``--column NAME=THEIRS``."""
     pairs = [column.partition("=") for column in columns or []]
     if wrong := [name for name, equals, own in pairs if not (name.strip() and equals and own.strip())]:
         raise usage(f"{wrong[0]!r} is not of the form NAME=THEIRS, for example display_C=T1", "--column")

@@ -1,4 +1,4 @@
-"""Answers of a kernel sent at once: without this, a small message waits for the page to confirm the one before.
+"""Kernel sockets that send small messages at once.
 
 TCP holds small packets back until earlier ones are confirmed (Nagle), and pages confirm up to 40 ms late. Each answer
 follows the short message that the kernel is busy, so that each would wait.

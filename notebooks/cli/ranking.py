@@ -1,4 +1,4 @@
-"""``thermicon rank``: predicted detection, confusions and information of one set, as table, JSON and figures."""
+"""``thermicon rank``: predicted detection, confusions, information of one set."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class RankedBy(CrowdOptions):
 
     memory: Annotated[
         Literal["episodes", "naming", "rules"],
-        typer.Option("--memory", "--by", help="Form of memory; rules: scores by rules of thumb instead of people."),
+        typer.Option("--memory", "--by", help="Form of memory; rules: rules of thumb instead of virtual people."),
     ] = "episodes"  # type: ignore[assignment]  # one more than other commands know
 
     @property
@@ -60,7 +60,7 @@ class RankedBy(CrowdOptions):
         return {**super().asked, "memory": "episodes"} if self.memory == "rules" else super().asked
 
     def draws(self, model: ObserverModel) -> int:
-        """How many draws to use."""
+        """The number of draws."""
         return 0 if self.memory == "rules" else super().draws(model)
 
 

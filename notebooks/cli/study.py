@@ -78,7 +78,7 @@ def _check_free(folder: Path) -> None:
 
 
 def report_lines(plan: Plan) -> list[str]:
-    """What was planned and judged, in lines for people."""
+    """The plan and its verdicts, in lines for people."""
     from ..study.build import plays_of
     from ..study.contents import planned_s
     from ..study.study_file import labels_of
@@ -144,7 +144,7 @@ def _gap_rows(plan: Plan) -> list[str]:
 
 
 def _colours(plan: Plan) -> str:
-    """How many drives are green and amber, in any order with this gap."""
+    """Numbers of green and amber drives, in any order with this gap."""
     colours = [one.verdict.colour for one in plan.judged.ready.prepared]
     counts = ", ".join(f"{colours.count(colour)} {colour}" for colour in ("green", "amber") if colour in colours)
     return f"{counts}, repeated in any order for the device {plan.materials.device.name}"

@@ -1,4 +1,4 @@
-"""``thermicon sweep``: one key of the rig over a range, and every number of a run at each value."""
+"""``thermicon sweep``: the numbers of a run at each value of one key of the rig."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ RECEPTORS = tuple(
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """What people perceive of a set: quantities by name, people, draws for intervals (0: none), and seed."""
+    """Perception in a sweep: quantities by name, people, draws for intervals (0: none), and seed."""
 
     icons: IconSet
     what: tuple[str, ...]

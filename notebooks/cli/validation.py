@@ -1,4 +1,4 @@
-"""``thermicon validate``: predicted and published results side by side, as a table or as JSON."""
+"""``thermicon validate``: predicted beside published results, as a table or as JSON."""
 
 from json import dumps
 from typing import Annotated

@@ -69,7 +69,7 @@ class Amount:
         return float(Fraction(value) * UNITS[kind][self.unit])
 
     def step(self, value: float, kind: Kind) -> float:
-        """What an SI value is rounded to, in SI: 0.1 °C, 0.05 s, 0.01 A, finer where it is small."""
+        """The rounding step of an SI value, in SI: 0.1 °C, 0.05 s, 0.01 A, finer where it is small."""
         return self.si(self._step(self.in_unit(value, kind)), kind)
 
     def rounded(self, value: float, kind: Kind) -> Decimal:
@@ -98,14 +98,14 @@ class Amount:
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class WrittenStatement:
     """A statement where it stands in a text: its numbers by keyword, and the word for its direction, if it has one."""
 
     amounts: Mapping[str, Amount]
     direction: tuple[int, int] | None
 
 
-def written(text: str, span: tuple[int, int]) -> Written:
+def written(text: str, span: tuple[int, int]) -> WrittenStatement:
     """Find the numbers of the statement that begins at a line and column (from 1) of a text.
 
     >>> written("cue 1\\nicon dip { cool by 6 °C at 3 °C/s }", (2, 12)).amounts["by"].number
@@ -118,7 +118,7 @@ def written(text: str, span: tuple[int, int]) -> Written:
     for match in _AMOUNT.finditer(text, begin, end):
         amounts.setdefault(match[1], Amount(*match.span(2), match[2], match[3]))
     word = _WORD.match(text, begin, end)
-    return Written(amounts, word.span(2) if word else None)
+    return WrittenStatement(amounts, word.span(2) if word else None)
 
 
 def keyword_of(leaf: Leaf, field: str) -> str:
@@ -199,7 +199,7 @@ def _candidates(text: str, icon: Icon, edited: Icon) -> Iterator[str]:
 def _numbers(
     text: str, before: Sequence[Any], after: Sequence[Any], control: str
 ) -> Iterator[tuple[tuple[int, int], str]]:
-    """Where the numbers that differ stand in the text, and what they become."""
+    """Places in the text of the numbers that differ, with their new text."""
     for old, new in zip(before, after, strict=False):
         if old == new or type(old) is not type(new) or old.span is None:
             continue

@@ -121,7 +121,7 @@ def export_figure(ready: Export, place: int = 0, size: tuple[float, float] = (8.
 
 
 def _drive_panel(ax: Axes, delivery: DeliveredDrive) -> None:
-    """What the device puts out: current, or the set-points of a thermode and the display behind them."""
+    """The device's output: current, or the set-points of a thermode and the display behind them."""
     designed, delivered = delivery.designed_trace, delivery.trace
     time_s, label, style = delivered.time_s, "current", "steps-post"
     wide, thin = designed.current_A, delivered.current_A

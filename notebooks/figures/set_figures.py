@@ -22,7 +22,7 @@ CELL_MM, LETTER_MM, LABEL_MM = 3.4, 1.1, 14.0
 
 
 def narrowest_mm(names: Sequence[str], beside: int = 1) -> float:
-    """How wide heat maps of so many names, one or two beside one another, are at least where each can be read."""
+    """The least width of one or two heat maps of so many names at which each can be read."""
     return beside * (LABEL_MM + LETTER_MM * _longest(names) + CELL_MM * len(names))
 
 
@@ -67,10 +67,10 @@ def observed_figure(found: Observed[Any, Any], look: Look = SCREEN) -> Any:
     """Draw observed beside predicted answers, and per cent correct before and after; of measurements that alone."""
     from matplotlib.figure import Figure
 
-    from thermicon.perception.pilot.conditioning import Answered
+    from thermicon.perception.pilot.conditioning import Namings
     from thermicon.perception.plots import draw_heat
 
-    if not isinstance(found.data, Answered):
+    if not isinstance(found.data, Namings):
         return found.plot().figure
     names, counts = list(found.data.trials.icons), found.data.trials.pooled
     observed = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1.0)

@@ -37,12 +37,12 @@ NARROW_MM, PANEL_MM = 120.0, 42.0
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """What a figure is for: print, so many mm wide, or a screen (None)."""
+    """The purpose of a figure: print, so many mm wide, or a screen (None)."""
 
     width_mm: float | None = None
 
     def across(self, panels: int) -> int:
-        """How many panels fit beside one another, of those that stand so where there is room.
+        """The number of panels side by side where there is room.
 
         >>> Look().across(3), Look(85.0).across(3), Look(180.0).across(3)
         (3, 2, 3)

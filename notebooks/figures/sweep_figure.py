@@ -63,7 +63,7 @@ def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
     are spaced more evenly in ratios than in steps.
     """
     if frame.columns[0] != "icon" or len(frame.columns) < 2:
-        raise InputError("this is no table of sweep(), whose first columns are icon and the key that was varied")
+        raise InputError("this is not a table of sweep(), whose first columns are icon and the key that was varied")
     key = str(frame.columns[1])
     what = [name for column in frame for name, columns in MEASURES.items() if columns[0] == column]
     panels = [(MEASURES[name], LABELS[name]) for name in what]

@@ -28,8 +28,8 @@ GOAL = re.compile(r"^# goal:[ \t]*(.*?)[ \t]*(?:\n|\Z)", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)
-class Edited:
-    """What a step of history holds."""
+class HistoryStep:
+    """The content of a step of history."""
 
     text: str
     icon: str | None = None
@@ -42,9 +42,9 @@ class History:
     Verbs return new histories. At most 200 steps are kept; the oldest are forgotten.
     """
 
-    now: Edited
-    past: tuple[Edited, ...] = ()
-    future: tuple[Edited, ...] = ()
+    now: HistoryStep
+    past: tuple[HistoryStep, ...] = ()
+    future: tuple[HistoryStep, ...] = ()
     last_s: float | None = field(default=None)
     kind: Kind = field(default="other")
 
@@ -78,7 +78,7 @@ class History:
             return self
         return History(self.future[-1], (*self.past, self.now), self.future[:-1])
 
-    def _with(self, new: Edited, kind: Kind, now_s: float | None, goes_on: bool) -> History:
+    def _with(self, new: HistoryStep, kind: Kind, now_s: float | None, goes_on: bool) -> History:
         if new == self.now:
             return replace(self, last_s=now_s, kind=kind)
         past = self.past if goes_on and self.past else (*self.past, self.now)[-MOST_STEPS:]
@@ -97,7 +97,7 @@ class Document:
         self.path = path
         self.name = name if path is None else path.name
         self.saved = text
-        self.history = History(Edited(text))
+        self.history = History(HistoryStep(text))
         self.keeps = keeps
         self._overwrites = self._crlf = False
         self._stamp: str | None = None
@@ -123,14 +123,14 @@ class Document:
 
     @property
     def goal(self) -> str:
-        """What is wanted of the set, as its text says in a comment ``# goal: …``; empty where it says nothing."""
+        """The goal of the set in its text, as a comment ``# goal: …``; empty where there is none."""
         found = GOAL.search(self.text)
         return "" if found is None else found[1]
 
     def aim(self, goal: str) -> None:
         """Write another goal into the text, as a step that can be undone; an empty one takes the line away.
 
-        Raises GoalError for what is no goal.
+        Raises GoalError for a text that is not a goal.
         """
         from thermicon.perception import Goal
 
@@ -146,7 +146,7 @@ class Document:
 
     @property
     def folder(self) -> Path:
-        """Where files are looked for and new ones are written."""
+        """The folder where files are looked for and new ones are written."""
         return Path() if self.path is None else self.path.parent
 
     def place(self, name: str) -> Path:
@@ -160,7 +160,7 @@ class Document:
         return f"{self.name}{unsaved if self.dirty else ''}"
 
     def warning(self) -> str:
-        """What may cost somebody their text, in one sentence; empty where nothing does."""
+        """The risk of losing text, in one sentence; empty where there is none."""
         if self._changed_on_disk():
             gone = self.path is not None and not self.path.exists()
             happened = "was removed" if gone else "has changed"

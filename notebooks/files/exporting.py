@@ -28,7 +28,7 @@ def felt_in(
     warn: Callable[[str], None] = lambda text: None,
     tail_s: float = 0.0,
 ) -> tuple[PerceivedChange, ...]:
-    """What `circuit.export` takes as ``felt``: detection by people, and d′ of a nominal person within a set.
+    """The argument ``felt`` of `circuit.export`: detection by people, and d′ of a nominal person within a set.
 
     ``rest`` are the icons of the set that are not exported, ``warn`` takes what cannot be compared, ``tail_s`` is
     simulated after the last corner.

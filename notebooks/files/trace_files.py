@@ -147,7 +147,7 @@ def _at(curves: Curves, name: str, time: Array) -> Array:
 
 
 def differences(both: Aligned) -> pd.DataFrame:
-    """How far B is from A in every common column: a row each, differences in `unit`, temperatures in K.
+    """Differences B minus A of every common column: one row each, in `unit`, temperatures in K.
 
     `largest` is signed, at `largest_s`; `rms` and `mean` are over the common times, each counted once.
     """

@@ -36,7 +36,7 @@ class Version:
 
     @property
     def age(self) -> str:
-        """How long ago it was written, in words."""
+        """The time since it was written, in words."""
         minutes = max(0.0, time.time() - self.at_s) / 60
         if minutes < 1.5:
             return "a moment ago"
@@ -122,7 +122,7 @@ class Versions:
             self._seen, self._last_s = self._status(), time.monotonic()
 
     def _read(self) -> tuple[Version, ...]:
-        """What the file holds, read again only when it is another."""
+        """The content of the file, read again only when it has changed."""
         if self.path is not None and (seen := self._status()) != self._seen:
             self._seen, self._held = seen, _versions_in(self.path)
         return self._held

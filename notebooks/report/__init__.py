@@ -1,1 +1,1 @@
-"""Text for people: messages, numbers, tables and sentences."""
+"""Text for people: messages, numbers, tables, sentences."""

@@ -1,4 +1,4 @@
-"""What a result says, as blocks of text, tables and figures: `terminal` and `as_html` render the same.
+"""Blocks of text, tables or figures, the form of every report.
 
 In HTML nothing is fetched from anywhere, there are no scripts and no dates, and equal blocks give equal bytes.
 """

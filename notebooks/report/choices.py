@@ -1,4 +1,4 @@
-"""The text of a goal, and of the choice of the best few icons of a set."""
+"""The text about a goal or about the choice of the best few icons."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def goal_lines(goal: GoalResult, verdict: str = "") -> Iterator[str]:
 
 
 def goal_value(found: GoalPartResult) -> str:
-    """What was predicted of a part, in its unit, and how far that is from what is wanted."""
+    """The prediction for a part of a goal, in its unit, and its distance from what is wanted."""
     if found.verdict:
         return f"{found.verdict} in this simulation; export judges the worst case"
     if found.value is None:

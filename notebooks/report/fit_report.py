@@ -1,4 +1,4 @@
-"""What ``thermicon fit`` says: parameters, residuals, doubts, and the table of a plan."""
+"""The report of ``thermicon fit``: parameters, residuals, doubts, the table of a plan."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from .blocks import Block, Grid, Text, grid
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
-    from thermicon.circuit.fitting.laboratory import Expected
+    from thermicon.circuit.fitting.laboratory import Forecast
     from thermicon.circuit.fitting.rig_fit import RigFit
 
 PLAN_HEAD = (
     "Half widths of the 95 % intervals to expect from one log of the shipped calibration drive, with 10 independent "
     "readings per second and noise of 20 mK and 5 mV. Logged are D the display, V the module's voltage, H the hot "
-    "plate, S the skin; in brackets what is no better than assumed anyway."
+    "plate, S the skin; in brackets what is not better than assumed."
 )
 LETTERS = {"display_C": "D", "voltage_V": "V", "hot_plate_C": "H", "skin_C": "S"}
 USUAL_DIGITS, MOST_DIGITS = 4, 7
@@ -31,7 +31,7 @@ def fit_report(fitted: RigFit, before: Rig) -> list[Block]:
     return [parameter_table(fitted), residual_table(fitted), *said]
 
 
-def plan_report(expected: Sequence[Expected]) -> list[Block]:
+def plan_report(expected: Sequence[Forecast]) -> list[Block]:
     """Report how well each choice of sensors will identify the keys: a row per key, a column per choice."""
     from thermicon.circuit.fitting.identify import width_text
     from thermicon.circuit.rig.faults import unit_of
@@ -72,7 +72,7 @@ def residual_table(fitted: RigFit) -> Grid:
 
 
 def doubts(fitted: RigFit) -> list[str]:
-    """What was not identified with the cure, and pairs that the logs hardly separate."""
+    """Keys that were not identified with the cure, and pairs that the logs hardly separate."""
     lines = [f"not identified: {item.key}; {item.cure}" for item in fitted.unidentified]
     keys = [item.key for item in fitted.parameters]
     pairs = [
@@ -85,7 +85,7 @@ def doubts(fitted: RigFit) -> list[str]:
 
 
 def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:
-    """What the safety gate and virtual people vary from now on, where it is not what it was before."""
+    """The spreads that the safety gate and virtual people use from now on, where they have changed."""
     from thermicon.circuit.rig.uncertainty import WORDS
 
     changed = [

@@ -1,4 +1,4 @@
-"""What to do next about a set: the command that helps with what is in the way, or the reason why none does."""
+"""The next step for a set: the command that helps most, or the reason why none does."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def _after_edits(found: SetReport, command: Command) -> str:
 
 
 def largest(found: Frontier) -> int | None:
-    """How many icons the largest choice has that meets the goal, or, without one, is distinguishable throughout."""
+    """The size of the largest choice that meets the goal, or, without one, is distinguishable throughout."""
     from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
 
     good = (
@@ -101,7 +101,7 @@ def _edited(found: SetReport) -> bool:
 
 
 def _wider(found: SetReport, command: Command) -> str:
-    """How detection grows with the area of the contact."""
+    """The growth of detection with the area of the contact."""
     area_cm2 = 1e4 * found.ranking.job.rig.contact.area_m2
     areas = f"contact.area_cm2={area_cm2:.3g}:{4.0 * area_cm2:.3g}:5log"
     return command("sweep", "--vary", areas, "--measure", "detected")

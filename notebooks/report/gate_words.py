@@ -1,4 +1,4 @@
-"""What the gate says of icons beyond their colour: how they may be repeated, and what the hardware must provide.
+"""The gate's findings in a report: permitted repetition, demands on the hardware.
 
 What holds for all icons of an export is said once, and of what differs the strictest, with the icon that it is of.
 """
@@ -46,7 +46,7 @@ def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
     again = "repeated plays" + (", in any order" if len(gates) > 1 else "")
     stuck = stuck_text(gates)
     first = [] if stuck is None else [("a driver stuck at its limit", stuck)]
-    return [*first, (again, repeated_text(gates)), ("the hardware must provide", demands_text(gates))]
+    return [*first, (again, repeated_text(gates)), ("your hardware must provide", demands_text(gates))]
 
 
 def repeated_text(gates: Sequence[Named]) -> str:
@@ -75,7 +75,7 @@ def repeated_text(gates: Sequence[Named]) -> str:
 
 
 def stuck_text(gates: Sequence[Named]) -> str | None:
-    """What a stuck driver does where no cut-off is quick enough, and what helps; None where a cut-off is."""
+    """The effect of a stuck driver where no cut-off is quick enough, with a cure; None where one is."""
     from thermicon.circuit.safety.words import fault_cure
 
     slow = [(name, gate.demands) for name, gate in gates if gate.demands.cut_off_display_C.react_within_s < QUICKEST_S]
@@ -88,7 +88,7 @@ def stuck_text(gates: Sequence[Named]) -> str | None:
 
 
 def demands_text(gates: Sequence[Named]) -> str:
-    """What hardware must do for all icons: of each demand the strictest."""
+    """Demands on the hardware for all icons: of each the strictest."""
     every = [(name, gate.demands) for name, gate in gates]
     cut = [one.cut_off_display_C for _, one in every]
     low, high = max(one.low for one in cut), min(one.high for one in cut)
@@ -99,10 +99,9 @@ def demands_text(gates: Sequence[Named]) -> str:
         whose = _of(_names(hangs), len(hangs) < len(every))
         parts = [f"a current that cannot hang{whose}, for which no watchdog is quick enough"]
     loop = every[0][1].loop  # of set-points: one for all icons
-    cut_off = f"cut-off at {number(low, 1)} and {number(high, 1)} °C on "
-    cut_off += "the measured display" if loop is None else "a second sensor of the display"
+    sensor = "the measured display" if loop is None else "a second sensor of the display"
     quick = f"within {within:g} s" if within >= QUICKEST_S else "(too slow for a driver stuck at its limit)"
-    parts.append(f"{cut_off} {quick}")
+    parts.append(f"cut-off outside {number(low, 1)} … {number(high, 1)} °C on {sensor} {quick}")
     limits = [one.current_limit_A for _, one in every if one.current_limit_A is not None]
     if limits:
         least, most = max(low for low, _ in limits), min(high for _, high in limits)
@@ -129,7 +128,8 @@ def demands_text(gates: Sequence[Named]) -> str:
         shortest = _strictest(limited, lambda one: one.zero_current_at_most_s or 0.0)
         parts.append(f"zero current in contact for {shortest} at most")
     pause_s = max(one.pause_at_least_s or 0.0 for _, one in every)
-    return f"{', '.join(parts)}; in any play after {number(pause_s, 1)} s of pause or more"
+    pause = f"after a pause of {number(pause_s, 1)} s or more" if pause_s else "with any pause"
+    return f"{', '.join(parts)}; this holds for every play {pause}"
 
 
 def warning_lines(ready: Sequence[Prepared]) -> Iterator[str]:
@@ -145,7 +145,7 @@ def warning_lines(ready: Sequence[Prepared]) -> Iterator[str]:
 
 
 def spread_text(spread: OpenLoopSpread) -> str:
-    """What an open loop leaves open, and what does not."""
+    """The uncertainty that an open loop leaves."""
     step = " … ".join(signed(value, "+.1f") for value in spread.step_K)
     low, high = spread.baseline_C
     return (

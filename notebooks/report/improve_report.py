@@ -1,4 +1,4 @@
-"""What ``improve`` says: how many icons of a pool are distinguishable, and what a search found beside its start."""
+"""The report of ``thermicon improve``: distinguishable icons of a pool, a search beside its start."""
 
 from __future__ import annotations
 

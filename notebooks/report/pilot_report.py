@@ -1,4 +1,4 @@
-"""What ``thermicon pilot`` says: data beside their prediction, and the prediction before and after."""
+"""The report of ``thermicon pilot``: data beside their prediction, the prediction before and after."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from thermicon.icons.number_text import percent, percent_span, signed
 from .blocks import Block, Bullets, Grid, Heading, Text, grid, printed_unit
 
 if TYPE_CHECKING:
-    from thermicon.perception.pilot.conditioning import Answered, MeasuredValues
+    from thermicon.perception.pilot.conditioning import MeasuredValues, Namings
     from thermicon.perception.pilot.observed import Observed
     from thermicon.perception.pilot.prediction import Fit, MeasurementFit
-    from thermicon.perception.pilot.sealed import Opened
+    from thermicon.perception.pilot.sealed import SealedScores
     from thermicon.perception.pilot.trials import AnswerScore
 
 MOST_PEOPLE, MOST_PAIRS = 20, 8
@@ -30,7 +30,7 @@ LEAST_CARRIED = 30
 """Laboratories of measurements below which an interval is rough."""
 
 
-def opened_report(found: Opened) -> list[Block]:
+def opened_report(found: SealedScores) -> list[Block]:
     """Report the scores of a sealed prediction, and in one sentence what they are worth."""
     columns = ("", "log score, bits a trial", "correct, it says")
     rows = [(by, signed(bits, ".2f"), percent(correct)) for by, (bits, correct) in found.scores.items()]
@@ -56,10 +56,10 @@ def opened_report(found: Opened) -> list[Block]:
 
 def observed_report(found: Observed[Any, Any], files: Sequence[str], last: str = "") -> list[Block]:
     """Report what was observed, how it fits, what the predictions of all sets become, and a last word."""
-    from thermicon.perception.pilot.conditioning import Answered
+    from thermicon.perception.pilot.conditioning import Namings
 
     title = found.predictions[0].before.title
-    told = answered_blocks(found) if isinstance(found.data, Answered) else measured_blocks(found)
+    told = answered_blocks(found) if isinstance(found.data, Namings) else measured_blocks(found)
     return [
         *([Heading(title, 1)] if title else []),
         *told,
@@ -85,10 +85,10 @@ def sets_table(found: Observed[Any, Any], files: Sequence[str]) -> Grid:
 
 
 def draws_sentences(found: Observed[Any, Any]) -> list[str]:
-    """How many draws carry the result, and which constants moved."""
-    from thermicon.perception.pilot.conditioning import Answered
+    """The number of draws that carry the result, and the constants that moved."""
+    from thermicon.perception.pilot.conditioning import Namings
 
-    own, people, answered = found.conditioned, found.predictions[0].after.people, isinstance(found.data, Answered)
+    own, people, answered = found.conditioned, found.predictions[0].after.people, isinstance(found.data, Namings)
     carried = f"effective sample size {own.effective:.0f} of {len(own.before)} draws"
     if own.rounds:
         rounds = "1 round" if own.rounds == 1 else f"{own.rounds} rounds"
@@ -169,13 +169,13 @@ def _three(ends: tuple[float, float, float]) -> str:
     return f"{middle} ({low} to {high})"
 
 
-def answered_blocks(found: Observed[Answered, Fit]) -> list[Block]:
+def answered_blocks(found: Observed[Namings, Fit]) -> list[Block]:
     """One row per participant and one for all, what the answers do not say, and how they fit the prediction."""
     said = "\n".join(observed_sentences(found.data))
     return [people_table(found.data), Text(said), Text("\n".join(fit_sentences(found))), *pairs(found.fit)]
 
 
-def people_table(data: Answered) -> Grid:
+def people_table(data: Namings) -> Grid:
     """One row per participant and one for all: trials, per cent correct, bits."""
     rows = [_row(score) for score in data.each[:MOST_PEOPLE]]
     if (more := len(data.each) - MOST_PEOPLE) > 0:
@@ -191,7 +191,7 @@ def _row(score: AnswerScore) -> list[str]:
     return [score.who, str(score.trials), *correct, f"{score.information_bits:.2f}", str(score.unanswered)]
 
 
-def observed_sentences(data: Answered) -> list[str]:
+def observed_sentences(data: Namings) -> list[str]:
     """Bias of the bits, and what the answers do not cover."""
     pooled, trials = data.pooled, data.trials
     lines = [
@@ -208,18 +208,18 @@ def observed_sentences(data: Answered) -> list[str]:
         lines.append(f"Passed over, with neither icon nor answer of the set: {trials.passed} rows or trials of a row.")
     if trials.grouped:
         lines.append(
-            "Counts of one group say nothing of differences between people, of order or of carry-over. The interval "
+            "Counts of one group do not show differences between people, order effects or carry-over. The interval "
             "takes all answers as independent, and the prediction takes the group for one person."
         )
     if trials.never_presented:
         lines.append(
-            f"Never presented: {', '.join(trials.never_presented)}. What is said of them is prediction alone, and "
+            f"Never presented: {', '.join(trials.never_presented)}. Their results are predictions alone, and "
             "per cent correct is that of the others."
         )
     return lines
 
 
-def fit_sentences(found: Observed[Answered, Fit]) -> list[str]:
+def fit_sentences(found: Observed[Namings, Fit]) -> list[str]:
     """The test of fit before and after, and the pairs that were missed."""
     fit, pooled = found.fit, found.data.pooled
     seen = found.data.trials.pooled
@@ -260,7 +260,7 @@ def p_text(p: float) -> str:
     return "under 0.01" if p < 0.01 else f"{p:.2f}"
 
 
-def _verdict(found: Observed[Answered, Fit]) -> str:
+def _verdict(found: Observed[Namings, Fit]) -> str:
     if (total := int(found.data.trials.counts.sum())) < LEAST_TRIALS:
         few = "1 answer is too little" if total == 1 else f"{total} answers are too few"
         return f": {few} to judge the model by; {LEAST_TRIALS} or more can"
@@ -279,7 +279,7 @@ def _verdict(found: Observed[Answered, Fit]) -> str:
 
 
 def misfit(before: float, after: float, what: str, laboratories: int, cure: str = "") -> str:
-    """What a small p says of the model, with a cure where it cannot explain them; empty where neither is small.
+    """The meaning of a small p, with a cure where the model cannot explain it; empty where neither is small.
 
     >>> misfit(0.02, 0.3, "answers", 500)
     'the prediction missed, but laboratories that the evidence allows explain the answers'

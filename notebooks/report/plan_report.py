@@ -1,4 +1,4 @@
-"""What ``thermicon pilot`` says of a plan: sizes of experiments, and what each gives."""
+"""The report of a plan for ``thermicon pilot``: sizes of experiments with their precision."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def plan_report(found: ExperimentPlan, names: Sequence[str]) -> list[Block]:
 
 
 def prediction_lines(found: ExperimentPlan, names: Sequence[str]) -> list[str]:
-    """What is predicted before any answer."""
+    """The prediction before any answer."""
     lines = []
     for name, each in zip(names, found.predictions, strict=True):
         share, low, high = each.proportion_correct
@@ -48,7 +48,7 @@ def _cell(found: ExperimentPlan, design: ExperimentSize) -> str:
 
 
 def design_lines(found: ExperimentPlan) -> list[str]:
-    """What the table shows, and which size to take."""
+    """The reading of the table, and the size to take."""
     best = found.cheapest
     if found.difference is None:
         wanted = f"an interval of {number(100 * found.wanted)} points or less"

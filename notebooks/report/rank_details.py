@@ -1,4 +1,4 @@
-"""What stands behind a ranking: notes, its numbers with intervals, the worst pair with its reasons, and assumptions."""
+"""The details of a ranking: notes, intervals, reasons for the worst pair, assumptions."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ MOST_EDITS = 20
 NAMES = {f"laboratory, {channel}": f"sensitivity to {channel} in your laboratory" for channel in ("cold", "warm")}
 DETECTED = (
     "Detected is the share of these people's trials that end in a report; onset is the median time of those reports, "
-    "channel what most of them go by, from 50 % on."
+    "channel that of most of them, from 50 % on."
 )
 
 
 def detail_blocks(made: SetReport) -> list[Block]:
     """The scores of the set, its worst pair, and what they depend on."""
     ranking, worst = made.ranking, made.ranking.worst
-    scores = [*number_points(made), *norm_points(ranking), *carried_points(ranking)]
+    scores = [*number_points(made), *memory_points(ranking), *carried_points(ranking)]
     found: list[Block] = [Heading("The set"), Bullets(tuple(scores))]
     if worst is not None:
         confused = f"confused in {percent(worst.confused_probability)} of trials, the mean of both ways"
@@ -119,16 +119,16 @@ def _range(ranking: Ranking, interval: str) -> str:
     return "" if ranking.people == 1 else f"; middle 95 % of people: {interval}"
 
 
-def norm_points(ranking: Ranking) -> Iterator[str]:
-    """Yield whether the order would change with the other form of memory; nothing for one icon."""
-    for norm, share in ranking.norm_sensitivity.items() if ranking.pairs else ():
-        changes = ranking.norm_changes[norm]
+def memory_points(ranking: Ranking) -> Iterator[str]:
+    """Yield the change of order with the other form of memory; nothing for one icon."""
+    for form, share in ranking.memory_sensitivity.items() if ranking.pairs else ():
+        changes = ranking.memory_changes[form]
         if not changes:
             order = "same order"
         else:
             more = f" ({count_of(len(changes) - 1, 'more change')} of order)" if len(changes) > 1 else ""
-            order = f"{changes[0][1]} before {changes[0][0]}{more}"
-        yield f"with the {norm} distance: {percent(share)} correct, {order}"
+            order = f"{changes[0][1]} then ranks before {changes[0][0]}{more}"
+        yield f"with the other form of memory ({form}): {percent(share)} correct, {order}"
 
 
 def carried_points(ranking: Ranking) -> Iterator[str]:
@@ -163,7 +163,7 @@ def edit_text(made: SetReport, pair: PairScore, lead: str = "cheapest edit: ") -
 
 
 def edit_words(edit: Edit) -> str:
-    """What an edit changes, and how far apart the pair is then."""
+    """The change by an edit, and the distance of the pair after it."""
     added = f" ({number(edit.added_s)} s longer)" if edit.added_s >= 0.05 else ""
     return f"in {edit.icon}, {edit.old} → {edit.new}{added}; then d′ {number(edit.d_prime)}"
 

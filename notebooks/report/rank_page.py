@@ -1,4 +1,4 @@
-"""``rank --report``: one ranking as a single page that can be mailed, printed and read on a phone."""
+"""``rank --report``: one ranking as a single page to mail, print or read on a phone."""
 
 from __future__ import annotations
 

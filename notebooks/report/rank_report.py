@@ -1,4 +1,4 @@
-"""A ranking as blocks: what a user asks first in twenty lines, and the rest on demand."""
+"""A ranking as blocks: first the twenty lines that a user asks first, the rest on demand."""
 
 from __future__ import annotations
 
@@ -185,7 +185,7 @@ def doubt_report(found: Sensitivity, title: str) -> list[Block]:
         )
         for effect in found.effects[:MOST_CONSTANTS]
     ]
-    lead = "Measure first, by the share of the variance of the proportion correct that would go:"
+    lead = "What to measure first, with the share of the variance of correct names that it would remove:"
     return [
         *([Heading(title, 1)] if title else []),
         grid(("constant", "95 % of draws", *numbers), rows, numbers),

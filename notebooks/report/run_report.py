@@ -1,4 +1,4 @@
-"""What is said of runs: of one trace, a session, a sweep, and of the differences of two runs or sets."""
+"""Reports of runs: one trace, a session, a sweep, differences of two runs or sets."""
 
 from __future__ import annotations
 

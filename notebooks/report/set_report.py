@@ -1,4 +1,4 @@
-"""A ranking beside what was asked of it afterwards, as one: the content of `rank --json`, its text and its page."""
+"""The full report of a set: ranking, choice, goal, edits."""
 
 from __future__ import annotations
 

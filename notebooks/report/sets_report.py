@@ -1,4 +1,4 @@
-"""Two sets beside each other: which is named better, and how sure that is."""
+"""Two sets beside each other: the difference in identification, with its certainty."""
 
 from __future__ import annotations
 

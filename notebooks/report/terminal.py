@@ -1,4 +1,4 @@
-"""Blocks as text for a terminal: they read well at 80 columns, and in a pipe."""
+"""Blocks as text for a terminal of 80 columns or for a pipe."""
 
 from __future__ import annotations
 

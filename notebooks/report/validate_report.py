@@ -1,4 +1,4 @@
-"""What ``thermicon validate`` says: targets, and how well rows are predicted without their experiment."""
+"""The report of ``thermicon validate``: targets, predictions of rows without their own experiment."""
 
 from __future__ import annotations
 
@@ -89,8 +89,8 @@ def summary_text() -> str:
     return (
         f"Left out with its experiment, {inside} of {rows} published numbers lie inside the 95 % interval of their "
         f"prediction ({0.95 * rows:.0f} expected). Median interval: a factor {plain(factor)} either way for {logs} "
-        f"rows on a log scale, ±{100 * share:.0f} % of the published number for the others. Fitted numbers say "
-        "nothing of prediction. Intervals of published numbers contain their standard error and the discrepancy that "
+        f"rows on a log scale, ±{100 * share:.0f} % of the published number for the others. Fitted numbers do "
+        "not test prediction. Intervals of published numbers contain their standard error and the discrepancy that "
         "the inference allows a model of this kind; that of spreads was chosen on such rows, so that they do not count "
         f"({sum(each.covered for each in spreads)} of {len(spreads)} inside)."
     )

@@ -138,7 +138,7 @@ def _beside(name: str, folder: Path) -> str:
 def make_plan(materials: Materials, bar: ProgressBar, say: Callable[[str], None] = lambda _: None) -> Plan:
     """Derive the pauses, order the trials, and judge drives and sessions; raises StudyRefused, StudyError, InputError.
 
-    `say` is told the plan before the judgement, which takes most of the time.
+    `say` receives the plan before the verdicts, which take most of the time.
     """
     from thermicon.circuit.solver.simulate import duration_s
 

@@ -145,7 +145,7 @@ def _session_facts(session: Session) -> dict[str, object]:
 
 
 def _choices(plan: Plan) -> dict[str, dict[str, str]]:
-    """What can be answered: a key and a text for each name."""
+    """Possible answers: a key and a text for each name."""
     study = plan.materials.study
     used = {study.run.start_key, study.run.stop_key, study.run.abort_key}
     if study.threshold is not None:
@@ -157,7 +157,7 @@ def _choices(plan: Plan) -> dict[str, dict[str, str]]:
 
 
 def _texts(plan: Plan) -> dict[str, str]:
-    """What the screen calls each icon: its meaning, or its name."""
+    """The text of each icon on the screen: its meaning, or its name."""
     return {icon.name: icon.metadata.means or icon.name for icon in plan.materials.chosen}
 
 
@@ -209,7 +209,7 @@ def _timeline(plan: Plan) -> dict[str, bytes]:
 
 
 def _readme(plan: Plan) -> str:
-    """How to run the study, in a few lines of plain text."""
+    """Instructions for the study, in a few lines of plain text."""
     study = plan.materials.study
     compare = "thermicon pilot icons.cue --answers data/answers.csv --rig rig.toml"
     return string.Template(_shipped("study_readme.txt").decode("utf-8")).substitute(

@@ -166,7 +166,7 @@ def json_bytes(content: object) -> bytes:
 
 @lru_cache(maxsize=1)
 def event_columns() -> dict[str, dict[str, Any]]:
-    """What each column of a table of events holds, as BIDS describes it."""
+    """The meaning of each column of a table of events, as BIDS describes it."""
     text = resources.files("thermicon.notebooks").joinpath("data", "study-events.json").read_text(encoding="utf-8")
     columns: dict[str, dict[str, Any]] = json.loads(text)
     return columns

@@ -36,7 +36,7 @@ class StudyTable(BaseModel):
 
 
 class Stimuli(StudyTable):
-    """What is played, and on what."""
+    """The stimuli of a study, and the rig that they are played on."""
 
     set: Name | None = None
     icons: Annotated[list[Name], Field(max_length=MOST_ASKED)] = []
@@ -47,14 +47,14 @@ class Stimuli(StudyTable):
 
 
 class Participants(StudyTable):
-    """Who takes part: a count, or labels."""
+    """The participants of a study: a count, or labels."""
 
     count: Annotated[int | None, Field(ge=1, le=MOST_PARTICIPANTS)] = None
     labels: Annotated[list[Label] | None, Field(min_length=1, max_length=MOST_PARTICIPANTS)] = None
 
 
 class StudyTrials(StudyTable):
-    """How often each icon is played, and in which order."""
+    """Trials of each icon, and their order."""
 
     repetitions: Annotated[int, Field(ge=1, le=MOST_REPETITIONS)]
     blocks: Annotated[int, Field(ge=1, le=MOST_BLOCKS)] = 1
@@ -76,7 +76,7 @@ class Timing(StudyTable):
 
 
 class StudyRun(StudyTable):
-    """What the script shows, and the keys and the line it uses."""
+    """The texts of the script, its keys and its line."""
 
     question: Annotated[Line | None, Field(min_length=1)] = None
     start_key: Key = "space"
@@ -175,7 +175,7 @@ def study_hash(study: Study, contents: Mapping[str, str]) -> str:
 
 
 def _faults(study: Study) -> list[str]:
-    """What is wrong between keys, a sentence each with the cure."""
+    """Contradictions between keys, each in a sentence with the cure."""
     people, stimuli, threshold, run = study.participants, study.stimuli, study.threshold, study.run
     labels = Counter(label.casefold() for label in people.labels or ())
     keys = Counter((run.start_key, run.stop_key, run.abort_key))

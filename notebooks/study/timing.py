@@ -42,7 +42,7 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class Landing:
-    """How long the hand rests on the display before a block, and what is then left of its own temperature.
+    """The rest of the hand on the display before a block, and what is then left of its own temperature.
 
     `left_K` is of skin and receptors at the end, `left_at_10_s_K` after 10 s, for skin that arrives `from_K` off.
     """
@@ -59,11 +59,11 @@ def carried_over(icons: Sequence[Icon], rig: Rig, gap_s: float, held: bool) -> t
     from thermicon.circuit.solver.simulate import duration_s
     from thermicon.perception.identification.carry_over import carry_over
     from thermicon.perception.identification.population import TAIL_S
-    from thermicon.perception.observer.channels import NORMS, USUAL_NORM
+    from thermicon.perception.observer.channels import MEMORY_FORMS, USUAL_MEMORY
 
     end_s = max(duration_s(icon, rig) for icon in icons) + TAIL_S
     left = carry_over(icons, rig, end_s, gap_s, tracking=None if held else "replay")
-    d_prime = left.apart[NORMS.index(USUAL_NORM)]
+    d_prime = left.apart[MEMORY_FORMS.index(USUAL_MEMORY)]
     before, after = divmod(int(d_prime.argmax()), len(icons))
     return float(d_prime.max()), (icons[before].name, icons[after].name)
 

@@ -14,7 +14,7 @@ from thermicon.icons.model.statements import Wave
 from thermicon.icons.number_text import number
 
 from ..editing.cue_check import read_text
-from ..editing.number_literals import Amount, Written, keyword_of, kind_of, replaced, written
+from ..editing.number_literals import Amount, WrittenStatement, keyword_of, kind_of, replaced, written
 from .handles import PEAK_AT, RATES, Grip, IconCorner, corners_of, grip_of, slots_of
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ _WORDS = {"cool": "warm", "warm": "cool"}
 
 
 @dataclass(frozen=True, slots=True)
-class Dragged:
+class DragResult:
     """The text after a drag; ``refused`` says why it is the text before."""
 
     text: str
@@ -40,7 +40,7 @@ class _Refused(Exception):
     """A drag that leads nowhere; the sentence says why."""
 
 
-def drag(text: str, icon: str, index: int, time_s: float, level: float, start: float | None = None) -> Dragged:
+def drag(text: str, icon: str, index: int, time_s: float, level: float, start: float | None = None) -> DragResult:
     """Move a corner of an icon to a time (s) and level (°C or A), as near as rounded numbers come.
 
     ``index`` counts the handles of the icon, ``start`` is the level of rest as in ``handles_of``. A ramp at a rate
@@ -53,9 +53,9 @@ def drag(text: str, icon: str, index: int, time_s: float, level: float, start: f
     'the corner cannot come before 2 s, where its statement begins'
     """
     try:
-        return Dragged(_drag(text, icon, index, time_s, level, start))
+        return DragResult(_drag(text, icon, index, time_s, level, start))
     except _Refused as why:
-        return Dragged(text, str(why))
+        return DragResult(text, str(why))
 
 
 def _drag(text: str, name: str, index: int, time_s: float, level: float, start: float | None) -> str:
@@ -92,7 +92,7 @@ class _Move:
     corner: IconCorner
     grip: Grip
     start: float | None
-    place: Written
+    place: WrittenStatement
 
     def amount(self, field: str) -> Amount:
         """Return the position of a number of the statement in the text."""
@@ -135,7 +135,7 @@ class _Move:
         return size, took
 
     def replay(self, size: float, took: float) -> tuple[float, float]:
-        """Where the corner would be with a statement of another size and time."""
+        """The place of the corner with a statement of another size and time."""
         self.check(size, took)
         if self.corner.path is None:
             return float(self.corner.level), float(self.corner.time_s)
@@ -150,7 +150,7 @@ class _Move:
         return float(found[self.index].level), float(found[self.index].time_s)
 
     def check(self, size: float, took: float) -> None:
-        """Refuse what is no statement: no time, no size."""
+        """Refuse an invalid statement: no time, no size."""
         now, grip = self.corner, self.grip
         if grip.time is not None and took <= 0:
             raise _Refused(self.too_early())

@@ -46,7 +46,7 @@ def terms_of(*names: str) -> list[list[str]]:
 
 @dataclass(frozen=True, slots=True)
 class CanvasFrame:
-    """What is sent: ``meta`` for JSON, and the arrays in the order that its series name by ``buffer``."""
+    """A message to the canvas: ``meta`` for JSON, and the arrays in the order of their ``buffer`` numbers."""
 
     meta: dict[str, Any]
     buffers: tuple[Floats, ...]

@@ -1,1 +1,1 @@
-"""The workbench: models, views and widgets."""
+"""The workbench: models, views, widgets."""

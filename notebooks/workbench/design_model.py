@@ -218,7 +218,7 @@ class DesignModel:
     def _draw(self, icon: str | None = None, notes: tuple[str, ...] = ()) -> None:
         self.scene = scene(self.text, self.rig, icon, self.observer, self.scene, (*notes, *self._told))
         if self.scene.icon != (history := self.document.history).now.icon:
-            # The icon that is shown is no step of its own; typing over its name goes on as one step.
+            # The icon that is shown is not a step of its own; typing over its name goes on as one step.
             self.document.history = replace(history, now=replace(history.now, icon=self.scene.icon))
 
 

@@ -31,7 +31,7 @@ SHIPPED = "shipped: "
 
 
 class DocumentBar:
-    """What can be done with the document of a design view; ``box`` is the bar with the panel that its buttons open."""
+    """Actions on the document of a design view; ``box`` is the bar with the panel that its buttons open."""
 
     def __init__(self, view: DesignView) -> None:
         self.view, self.design = view, view.design
@@ -70,7 +70,7 @@ class DocumentBar:
 
     @property
     def document(self) -> Document:
-        """What is in the editor."""
+        """The text in the editor."""
         return self.design.document
 
     def renew(self) -> None:

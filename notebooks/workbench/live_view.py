@@ -148,7 +148,7 @@ class LiveView(ABC, Generic[Request]):
 
     @abstractmethod
     def _request(self) -> Request:
-        """What is to be computed now."""
+        """The next computation."""
 
     @abstractmethod
     def _obstacle(self, request: Request) -> str | None:

@@ -31,7 +31,7 @@ ASKED = ("d′", "bits", "detected", "felt", "onset", "proportion correct", "mid
 
 
 def set_html(made: SetReport) -> dict[str, str]:
-    """What is said of a ranking, by the names of its parts.
+    """The text about a ranking, by the names of its parts.
 
     Parts are: scores with the interval of the laboratory that is predicted; one row per icon, the best first; notes of
     what is unsafe, out of reach or out of the range of the data; and what the numbers rest on.
@@ -124,7 +124,7 @@ def gate_html(icon: Prepared) -> str:
 
 
 def _check(check: Check, source_number: int) -> dict[str, object]:
-    """What the template prints for one rule."""
+    """The template's fields for one rule."""
     unit, (worst, limit) = "" if check.unit == "1" else f" {check.unit}", check.figures
     kind, mark = ("", "ok") if check.passed else ("bad", "RED") if check.severity == "hard" else ("amber", "amber")
     return {

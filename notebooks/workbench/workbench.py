@@ -1,4 +1,4 @@
-"""The workbench: design, set and export of thermal icons as one page of widgets or as figures."""
+"""The workbench: design view, set view, export view, as one page of widgets or as figures."""
 
 from __future__ import annotations
 
@@ -157,7 +157,7 @@ class Workbench:
 
     @property
     def percept(self) -> Percept | None:
-        """What is felt of it."""
+        """The percept of the icon."""
         drawing = self._design.scene.drawing
         return None if drawing is None else drawing.percept
 

@@ -184,7 +184,7 @@ Run = Callable[..., Iterable[Any]]
 
 @dataclass(frozen=True, slots=True)
 class Points:
-    """Where residuals are known: `vectors` (points, n) in SDs of the prior, `misses` (points, all rows) in SDs."""
+    """Known residuals: `vectors` (points, n) in SDs of the prior, `misses` (points, all rows) in SDs."""
 
     vectors: Array
     misses: Array

@@ -20,7 +20,7 @@ from ..observer.observer import Observer, load_thresholds
 from ..sensation.bench import Bench, Stimulus, Surface, raised_cosine, ramp
 from ..sensation.detection import criterion_of, detect
 from ..sensation.percept import perceive
-from .predicted import DRAWS, Asked, Predicted, laboratory_of, predict
+from .predicted import DRAWS, Predicted, Query, laboratory_of, predict
 
 RATES_K_PER_S = (0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3)
 FLAT_K_PER_S = (0.1, 0.2, 0.3)
@@ -43,7 +43,7 @@ STEEP = f"display step of {STEEP_K:g} K at {STEEP_K_PER_S:g} K/s, thenar, percep
 
 @lru_cache(maxsize=2048)
 def measured(setting: Setting, condition: Condition, person: Observer) -> float:
-    """What one person gives in a task, in the unit of the condition; inf where the largest change is not felt."""
+    """A person's result in a task, in the unit of the condition; inf where the largest change is not felt."""
     value = float(np.exp(logs_of(laboratory_of(person, setting), setting, condition, SIZES_K)[0].mean()))
     return value if condition.method not in ADAPTIVE or value < 0.999 * SIZES_K[-1] else np.inf
 
@@ -56,7 +56,7 @@ def _threshold(method: str, channel: Channel, rate_K_per_s: float = 1.0, hold_s:
 def rate_curve(variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0) -> tuple[Predicted, ...]:
     """Thresholds on the forearm against the rate of change, as Kenshalo, Holmes & Wood 1968 studied."""
     setting = Setting("forearm", AT_THE_SKIN, 9.0)
-    said = "forced choice at the skin, forearm, from 32 °C; the end of the ramp is held for 1 s"
+    how = "forced choice at the skin, forearm, from 32 °C; the end of the ramp is held for 1 s"
 
     def at(channel: Channel, rate: float, person: Observer) -> float:
         return measured(setting, _threshold("forced_choice", channel, rate, 1.0), person)
@@ -68,19 +68,19 @@ def rate_curve(variable: Variable = "temperature", *, draws: int = DRAWS, seed: 
     def raised(channel: Channel, rate: float, person: Observer) -> float:
         return at(channel, rate, person) / at(channel, FLAT_K_PER_S[0], person)
 
-    asked, named = [], {rate: f"threshold at {rate:g} K/s" for rate in RATES_K_PER_S}
+    queries, named = [], {rate: f"threshold at {rate:g} K/s" for rate in RATES_K_PER_S}
     for channel in CHANNELS:
-        asked += [
-            Asked(name, channel, "K", said, partial(at, channel, rate), noticed_K(channel))
+        queries += [
+            Query(name, channel, "K", how, partial(at, channel, rate), noticed_K(channel))
             for rate, name in named.items()
         ]
-        asked.append(Asked("largest change over 0.1 to 0.3 K/s", channel, "1", said, partial(change, channel), 0.0))
-        asked += [
-            Asked(f"{name} over that at 0.1", channel, "1", said, partial(raised, channel, rate), 1.0)
+        queries.append(Query("largest change over 0.1 to 0.3 K/s", channel, "1", how, partial(change, channel), 0.0))
+        queries += [
+            Query(f"{name} over that at 0.1", channel, "1", how, partial(raised, channel, rate), 1.0)
             for rate, name in named.items()
             if rate not in FLAT_K_PER_S
         ]
-    return predict("rate curve", asked, variable, draws, seed)
+    return predict("rate curve", queries, variable, draws, seed)
 
 
 def limits(
@@ -95,24 +95,24 @@ def limits(
     """Limits at 1 °C/s from 32 °C, cold then warm: the median of `people`, of 20 to 30 years if no age is given."""
     rig, area = LIMITS[site]
     setting, aged = _setting(rig, area), "" if age_years is None else f", {age_years:g} years"
-    said = f"display ramp of 1 K/s, {area:g} cm²{aged}"
+    how = f"display ramp of 1 K/s, {area:g} cm²{aged}"
     years = YOUNG_YEARS if age_years is None else age_years
     crowd = laboratory_of(Observer.load(variable=variable), setting, people=people, seed=seed, age_years=years)
     conditions = [_threshold("limits", channel) for channel in CHANNELS]
-    asked = [
-        Asked("limits threshold", one.channel, "K", said, partial(measured, setting, one), noticed_K(one.channel))
+    queries = [
+        Query("limits threshold", one.channel, "K", how, partial(measured, setting, one), noticed_K(one.channel))
         for one in conditions
     ]
-    made = []
-    for found, one in zip(predict(f"limits on the {site}", asked, variable, draws, seed), conditions, strict=True):
-        made.append(replace(found, value=float(np.median(np.exp(logs_of(crowd, setting, one)[0])))))
-    return tuple(made)
+    medians = []
+    for each, one in zip(predict(f"limits on the {site}", queries, variable, draws, seed), conditions, strict=True):
+        medians.append(replace(each, value=float(np.median(np.exp(logs_of(crowd, setting, one)[0])))))
+    return tuple(medians)
 
 
 def reaction_times(variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0) -> tuple[Predicted, ...]:
     """Choice reaction times on the forearm at 5 °C/s from 31 °C: a median for each area, their exponent and ratio."""
-    said = f"display ramp of {RAMP_K_PER_S:g} K/s up to {RAMP_K:g} K from 31 °C, forearm, warm or cold?"
-    largest = AREAS_CM2[-1]
+    how = f"display ramp of {RAMP_K_PER_S:g} K/s up to {RAMP_K:g} K from 31 °C, forearm, warm or cold?"
+    widest = AREAS_CM2[-1]
 
     def at(channel: Channel, area_cm2: float, person: Observer) -> float:
         timed = Condition("reaction_time", "choice", channel, 31.0, RAMP_K, RAMP_K_PER_S, 0.0)
@@ -122,16 +122,16 @@ def reaction_times(variable: Variable = "temperature", *, draws: int = DRAWS, se
         times = [at(channel, area, person) for area in AREAS_CM2]
         return float(np.polyfit(np.log(AREAS_CM2), np.log(times), 1)[0])
 
-    asked = [
-        Asked(f"reaction time at {area:g} cm²", channel, "s", said, partial(at, channel, area))
+    queries = [
+        Query(f"reaction time at {area:g} cm²", channel, "s", how, partial(at, channel, area))
         for channel in CHANNELS
         for area in AREAS_CM2
     ]
-    asked += [
-        Asked("exponent of area", c, "1", f"{said}; over {AREAS_CM2} cm²", partial(exponent, c)) for c in CHANNELS
+    queries += [
+        Query("exponent of area", c, "1", f"{how}; over {AREAS_CM2} cm²", partial(exponent, c)) for c in CHANNELS
     ]
-    asked.append(Asked("warm over cold", "both", "1", said, lambda o: at("warm", largest, o) / at("cold", largest, o)))
-    return predict("choice reaction time", asked, variable, draws, seed)
+    queries.append(Query("warm over cold", "both", "1", how, lambda o: at("warm", widest, o) / at("cold", widest, o)))
+    return predict("choice reaction time", queries, variable, draws, seed)
 
 
 def _setting(rig: str, area_cm2: float) -> Setting:
@@ -145,7 +145,7 @@ def peak_lead(variable: Variable = "temperature", *, draws: int = DRAWS, seed: i
     The stimulus is one smooth pulse of the display on the thenar, for the onset also a steep step: its lag is what heat
     must lead a touch by to seem simultaneous if touch itself took no time.
     """
-    said = f"raised-cosine display pulse of {PULSE_K:g} K in {PULSE_S:g} s, thenar, percept clock"
+    how = f"raised-cosine display pulse of {PULSE_K:g} K in {PULSE_S:g} s, thenar, percept clock"
 
     def lead(surface: Surface, channel: Channel, person: Observer) -> float:
         played = _pulse(channel)
@@ -157,11 +157,11 @@ def peak_lead(variable: Variable = "temperature", *, draws: int = DRAWS, seed: i
         found = perceive(play(channel).traces[0], person)
         return float(np.inf) if found.onset_s is None else found.onset_s - person.decision_s
 
-    asked = [Asked("felt peak minus the display's", c, "s", said, partial(lead, "display", c)) for c in CHANNELS]
-    asked += [Asked("felt peak minus the skin's", c, "s", said, partial(lead, "skin", c)) for c in CHANNELS]
-    asked += [Asked("lag of the felt onset", c, "s", said, partial(onset, _pulse, c)) for c in CHANNELS]
-    asked += [Asked("lag of the felt onset", c, "s", STEEP, partial(onset, _steep, c)) for c in CHANNELS]
-    return predict("felt peak", asked, variable, draws, seed)
+    queries = [Query("felt peak minus the display's", c, "s", how, partial(lead, "display", c)) for c in CHANNELS]
+    queries += [Query("felt peak minus the skin's", c, "s", how, partial(lead, "skin", c)) for c in CHANNELS]
+    queries += [Query("lag of the felt onset", c, "s", how, partial(onset, _pulse, c)) for c in CHANNELS]
+    queries += [Query("lag of the felt onset", c, "s", STEEP, partial(onset, _steep, c)) for c in CHANNELS]
+    return predict("felt peak", queries, variable, draws, seed)
 
 
 def first_and_return(variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0) -> tuple[Predicted, ...]:
@@ -170,7 +170,7 @@ def first_and_return(variable: Variable = "temperature", *, draws: int = DRAWS, 
     Half of the steps are reported by an observer who is not cautious. Published: only the first direction is felt.
     """
     alarms = load_thresholds().one("false-alarm rate near threshold").central
-    said = f"skin steps at 1 K/s half of which are reported, held for {HOLD_S:g} s, {alarms:g} false alarms, thenar"
+    how = f"skin steps at 1 K/s half of which are reported, held for {HOLD_S:g} s, {alarms:g} false alarms, thenar"
     setting = Setting("thenar", AT_THE_SKIN, 9.0)
 
     def returned(channel: Channel, person: Observer) -> float:
@@ -183,8 +183,8 @@ def first_and_return(variable: Variable = "temperature", *, draws: int = DRAWS, 
         after = (warm if channel == "cold" else cold)[round(start / played.dt_s) :]
         return float(detect(after, np.zeros_like(after), played.dt_s, keen).probability)
 
-    asked = [Asked("report of the return", c, "proportion", said, partial(returned, c)) for c in CHANNELS]
-    return predict("step and return near threshold", asked, variable, draws, seed)
+    queries = [Query("report of the return", c, "proportion", how, partial(returned, c)) for c in CHANNELS]
+    return predict("step and return near threshold", queries, variable, draws, seed)
 
 
 @lru_cache(maxsize=2)

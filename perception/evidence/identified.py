@@ -26,7 +26,7 @@ from ..identification.measures import information_bits, plugin_bits, proportion_
 from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond, run_end_s
 from ..identification.skin_alone import named_by_skin
 from ..kernels.parallel import in_order
-from ..observer.channels import CHANNELS, USUAL_NORM, Variable, receptor_column
+from ..observer.channels import CHANNELS, USUAL_MEMORY, Variable, receptor_column
 from ..observer.observer import Observer
 from ..observer.people import People, draw_people
 from ..ranking.batches import EXPERIMENTS
@@ -41,7 +41,7 @@ Score = Callable[[Array], float]
 
 
 @dataclass(frozen=True, slots=True)
-class Identified:
+class VariantConfusions:
     """Confusions of a variant: of every person, of `few` (the nominal observer, each laboratory), by skin alone."""
 
     variable: Variable
@@ -59,7 +59,7 @@ class Identified:
     @property
     def said(self) -> str:
         """The conditions of its predictions."""
-        return f"named from memory, {self.probability.shape[0]} people, {USUAL_NORM}"
+        return f"named from memory, {self.probability.shape[0]} people, {USUAL_MEMORY}"
 
     def predicted(
         self, experiment: str, quantity: str, unit: str, score: Score, *, conditions: str = "", top: float = math.inf
@@ -73,7 +73,7 @@ class Identified:
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class ShownSet:
     """A set that is shown to many people; `identify` asks one variant of the observer."""
 
     icons: tuple[Icon, ...]
@@ -84,12 +84,12 @@ class Shown:
     baseline: Array
 
     def played(self, variable: Variable) -> ReceptorTemperatures:
-        """What the receptors of every person go through, as the nominal observer of a variant has them."""
+        """Receptor temperatures of every person, with the nominal observer of a variant."""
         cold, warm = (receptor_column(variable, channel) for channel in CHANNELS)
         how = self.rig, Observer.load(variable=variable), self.end_s, RATE_HZ, None
         return ReceptorTemperatures.simulated(self.icons, self.crowd, *how, (cold, warm))
 
-    def identify(self, variable: Variable, draws: int) -> Identified:
+    def identify(self, variable: Variable, draws: int) -> VariantConfusions:
         """Confusions of one variant from memory."""
         labels, rig = tuple(icon.name for icon in self.icons), self.rig
         few = self.crowd.part(0, people_for_intervals(len(labels)))
@@ -102,7 +102,7 @@ class Shown:
 
         def confusions(at: ReceptorTemperatures, observer: Observer, people: People, samples: int) -> Array:
             felt = respond(at, people, observer, detection=False)
-            probability: Array = identify(felt, USUAL_NORM, people, observer, self.seed, samples)[1].probability
+            probability: Array = identify(felt, USUAL_MEMORY, people, observer, self.seed, samples)[1].probability
             return probability
 
         whole = confusions(self.played(variable), nominal, self.crowd, SAMPLES)
@@ -115,10 +115,10 @@ class Shown:
         each = list(in_order(drawn, range(draws)))
         kept = np.stack(each) if each else np.zeros((0, *whole.shape))
         alone = confusions(thin, nominal, few, FEW_SAMPLES)
-        return Identified(variable, labels, whole, alone, kept, self.baseline)
+        return VariantConfusions(variable, labels, whole, alone, kept, self.baseline)
 
 
-def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> Shown:
+def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> ShownSet:
     """Icons to play to virtual people, each on their own skin and contact, as `rank` does."""
     from thermicon.circuit import simulate_many
     from thermicon.circuit.solver.simulate import duration_s
@@ -128,7 +128,7 @@ def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> Shown:
     end = run_end_s(durations)
     batch = simulate_many(members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, probes=[SKIN])
     rows = [round(each * RATE_HZ) + 1 for each in durations]
-    return Shown(members, rig, end, crowd, seed, named_by_skin(batch[SKIN], rows, crowd, seed))
+    return ShownSet(members, rig, end, crowd, seed, named_by_skin(batch[SKIN], rows, crowd, seed))
 
 
 def correct(probability: Array) -> float:
@@ -141,27 +141,27 @@ def correct_of(places: Sequence[int], probability: Array) -> float:
     return float(np.mean([probability[:, k, k].mean() for k in places]))
 
 
-def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...]:
+def six_icons(confused: VariantConfusions, trials: int, seed: int) -> tuple[Predicted, ...]:
     """Proportion correct, information (exact, and as the experiment would report it), each icon, spread of people."""
-    most = math.log2(len(found.labels))
+    most = math.log2(len(confused.labels))
 
     def share_of_people(share: float) -> Score:
         return lambda p: float(np.percentile(proportion_correct(p), share))
 
-    asked: list[tuple[str, str, Score, float]] = [
+    scores: list[tuple[str, str, Score, float]] = [
         ("proportion correct", "proportion", correct, 1.0),
         ("proportion correct, lower end of people", "proportion", share_of_people(2.5), 1.0),
         ("proportion correct, upper end of people", "proportion", share_of_people(97.5), 1.0),
         ("plug-in information", "bit", lambda p: plugin_bits(p, trials, seed, EXPERIMENTS), most),
         ("information", "bit", lambda p: float(information_bits(p).mean()), most),
     ]
-    asked += [
+    scores += [
         (f"proportion correct, {name}", "proportion", partial(correct_of, [k]), 1.0)
-        for k, name in enumerate(found.labels)
+        for k, name in enumerate(confused.labels)
     ]
-    made = [found.predicted("six icons", name, unit, score, top=top) for name, unit, score, top in asked]
-    made[3] = replace(made[3], conditions=f"{found.said}; plug-in estimate of {trials} trials a person")
-    return tuple(made)
+    results = [confused.predicted("six icons", name, unit, score, top=top) for name, unit, score, top in scores]
+    results[3] = replace(results[3], conditions=f"{confused.said}; plug-in estimate of {trials} trials a person")
+    return tuple(results)
 
 
 WAVES = "wave-confusions"
@@ -174,7 +174,7 @@ PAIRS = tuple(combinations(SHAPES, 2))
 
 @dataclass(frozen=True, slots=True)
 class Likeness:
-    """How alike two shapes of a group are at the skin: differences over the swing, largest and root mean square."""
+    """Similarity of two shapes at the skin: differences over the swing, largest and root mean square."""
 
     group: str
     pair: tuple[str, str]
@@ -193,7 +193,7 @@ def likeness(rig: Rig) -> tuple[Likeness, ...]:
     from thermicon.circuit.solver.simulate import duration_s
     from thermicon.icons import load_library
 
-    icons, found = load_library(WAVES), []
+    icons, similar = load_library(WAVES), []
     for poles, period in GROUPS:
         own = {shape: icons[wave_name(shape, poles, period)] for shape in SHAPES}
         end = max(duration_s(icon, rig) for icon in own.values()) + TAIL_S
@@ -204,31 +204,31 @@ def likeness(rig: Rig) -> tuple[Likeness, ...]:
         for first, second in PAIRS:
             apart = (skin[first] - skin[second]) / swing
             rms = float(np.sqrt((apart**2).mean()))
-            found.append(Likeness(f"{poles}, {period} s", (first, second), float(np.abs(apart).max()), rms))
-    return tuple(found)
+            similar.append(Likeness(f"{poles}, {period} s", (first, second), float(np.abs(apart).max()), rms))
+    return tuple(similar)
 
 
-def wave_shapes(found: Identified, alike: Sequence[Likeness]) -> tuple[Predicted, ...]:
-    """How alike the shapes are at the skin, and whether they are each other's main confusions."""
-    places = {shape: [found.labels.index(wave_name(shape, *group)) for group in GROUPS] for shape in SHAPES}
-    made, skin = [], "skin temperature over the swing, largest of four groups"
-    said = f"named from memory, {len(found.labels)} icons, {found.probability.shape[0]} people, {USUAL_NORM}"
+def wave_shapes(confused: VariantConfusions, alike: Sequence[Likeness]) -> tuple[Predicted, ...]:
+    """Similarity of shapes at the skin, and whether they are each other's main confusions."""
+    places = {shape: [confused.labels.index(wave_name(shape, *group)) for group in GROUPS] for shape in SHAPES}
+    results, skin = [], "skin temperature over the swing, largest of four groups"
+    how = f"named from memory, {len(confused.labels)} icons, {confused.probability.shape[0]} people, {USUAL_MEMORY}"
     for pair in PAIRS:
         both = " and ".join(pair)
         largest = max(one.largest for one in alike if one.pair == pair)
-        asked, ends = f"largest difference of {both}", (None, None)
-        made.append(Predicted("wave shapes", asked, "both", largest, "1", *ends, found.variable, skin))
+        name, ends = f"largest difference of {both}", (None, None)
+        results.append(Predicted("wave shapes", name, "both", largest, "1", *ends, confused.variable, skin))
         main, mixed = partial(_main, places, pair), partial(_mixed, places, pair)
-        for asked, unit, score, top in (
+        for name, unit, score, top in (
             (f"confusion of {both} over any other", "1", main, math.inf),
             (f"confusion of {both} over the mean of others", "1", partial(_main, places, pair, mean=True), math.inf),
             (f"confusion of {both}", "proportion", mixed, 1.0),
         ):
-            made.append(found.predicted("wave shapes", asked, unit, score, conditions=said, top=top))
+            results.append(confused.predicted("wave shapes", name, unit, score, conditions=how, top=top))
     for shape in SHAPES:
-        asked, score = f"proportion correct, {shape}", partial(correct_of, places[shape])
-        made.append(found.predicted("wave shapes", asked, "proportion", score, conditions=said, top=1.0))
-    return tuple(made)
+        name, score = f"proportion correct, {shape}", partial(correct_of, places[shape])
+        results.append(confused.predicted("wave shapes", name, "proportion", score, conditions=how, top=1.0))
+    return tuple(results)
 
 
 def _main(places: dict[str, list[int]], pair: tuple[str, str], probability: Array, *, mean: bool = False) -> float:

@@ -35,7 +35,7 @@ LIMITS = names_of(Observer, "limit_C", "softness_K")
 
 @dataclass(frozen=True)
 class Posterior:
-    """What is inferred, from which rows: vectors are in SDs of the prior, 0 at its middle.
+    """The inferred constants and their rows: vectors are in SDs of the prior, 0 at its middle.
 
     >>> posterior = Posterior()
     >>> len(posterior.priors), len(posterior.rows)
@@ -164,7 +164,7 @@ class LeftOut:
 
     @property
     def score(self) -> float:
-        """How far the row lies from its prediction, in SDs."""
+        """Distance of the row from its prediction, in SDs."""
         return (self.row.value - self.predicted) / self.sd
 
     @property

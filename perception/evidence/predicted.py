@@ -15,7 +15,7 @@ from ..experiments.laboratory import PEOPLE, SEED, Laboratory
 from ..experiments.measure import Setting
 from ..identification.laboratory_draws import DrawnLaboratories
 from ..kernels.parallel import in_order
-from ..observer.channels import CHANNELS, USUAL_NORM, Variable
+from ..observer.channels import CHANNELS, USUAL_MEMORY, Variable
 from ..observer.draws import PosteriorDraws
 from ..observer.mechanisms.age import YOUNG_YEARS
 from ..observer.observer import Observer, variant_records
@@ -61,8 +61,8 @@ def laboratory_of(
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
-    """What an experiment is asked for, how a subject answers (inf: not), and what skin temperature alone predicts."""
+class Query:
+    """A question to subjects, their answers (inf: not), and the answer from skin temperature alone."""
 
     quantity: str
     channel: str
@@ -73,7 +73,7 @@ class Asked:
 
 
 def predict(
-    experiment: str, asked: Sequence[Asked], variable: Variable, draws: int = DRAWS, seed: int = 0
+    experiment: str, asked: Sequence[Query], variable: Variable, draws: int = DRAWS, seed: int = 0
 ) -> tuple[Predicted, ...]:
     """Answers of the nominal observer, with the interval over `draws` plausible ones (0: none) of a seed."""
 
@@ -104,7 +104,7 @@ def quantile_felt(ordered: Array, share: float) -> float | None:
 
 
 def interval_of(each: Sequence[float]) -> tuple[float | None, float | None]:
-    """What encloses 95 % of answers (inf: not felt); an end that lies among those not felt is None.
+    """The 95 % interval of answers (inf: not felt); an end among those not felt is None.
 
     >>> interval_of((1.0, 2.0, 3.0)), interval_of(())
     ((1.05, 2.95), (None, None))
@@ -119,7 +119,7 @@ def plausible_laboratories(n: int, seed: int, variable: Variable) -> DrawnLabora
     """Laboratories of n draws of the posterior of a variant."""
     posterior, records = PosteriorDraws.load(variable=variable), variant_records(variable)
     return DrawnLaboratories.of(
-        replace(ObserverModel.load(), records=records, posterior=posterior), USUAL_NORM, n, seed
+        replace(ObserverModel.load(), records=records, posterior=posterior), USUAL_MEMORY, n, seed
     )
 
 

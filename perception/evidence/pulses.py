@@ -14,13 +14,13 @@ from ..identification.confusion import confuse
 from ..identification.laboratory_draws import SAMPLES
 from ..identification.population import memory_dprime, respond
 from ..identification.task import USUAL
-from ..observer.channels import USUAL_NORM, Variable
+from ..observer.channels import USUAL_MEMORY, Variable
 from ..observer.observer import DATA, Observer
 from ..ranking.rank import rank
 from ..ranking.ranking import Ranking
 from ..selection.choose import choose
 from ..selection.request import Selection
-from .identified import Shown, correct, show
+from .identified import ShownSet, correct, show
 from .predicted import DRAWS, Predicted
 
 RIG, COUNTS, SETS = "tcs2", (22, 16), 100
@@ -35,13 +35,13 @@ def _ranked(seed: int) -> Ranking:
 
 @lru_cache(maxsize=4)
 def best_pulses(count: int, seed: int) -> tuple[Icon, ...]:
-    """The so many sequences of which the nearest two are farthest apart; those named best are no better."""
+    """The sequences, `count` of them, whose nearest two are farthest apart; those named best are no better."""
     chosen = choose(_ranked(seed), Selection(count), parameters=0).icons
     return tuple(icon for icon in _ranked(seed).job.icons if icon.name in chosen)
 
 
 @lru_cache(maxsize=4)
-def _shown(count: int | None, people: int, seed: int) -> Shown:
+def _shown(count: int | None, people: int, seed: int) -> ShownSet:
     """The best sequences, or all, as both variants are asked of them."""
     return show(_ranked(seed).job.icons if count is None else best_pulses(count, seed), Rig.load(RIG), people, seed)
 
@@ -55,7 +55,7 @@ def short_pulses(variable: Variable, people: int, draws: int, seed: int) -> tupl
         made.append(found.predicted("short pulses", asked, "proportion", correct, top=1.0))
     every, observer = _shown(None, RANKED, seed), Observer.load(variable=variable)
     felt = respond(every.played(variable), every.crowd, observer, detection=False)
-    apart = memory_dprime(felt, USUAL_NORM, every.crowd.memory, observer, USUAL)
+    apart = memory_dprime(felt, USUAL_MEMORY, every.crowd.memory, observer, USUAL)
     chance, said = np.random.default_rng(np.random.SeedSequence([seed, 31])), f"{SETS} sets of {RANKED} people, {RIG}"
     scores = []
     for _ in range(SETS):

@@ -15,7 +15,7 @@ from ..arrays import Array
 from ..identification.skin_alone import noticed_K
 from ..observer.channels import Variable
 from ..observer.observer import Observer, load_thresholds
-from .predicted import DRAWS, Asked, Predicted, predict
+from .predicted import DRAWS, Predicted, Query, predict
 
 RADIANT_S, DT_S = 3.0, 0.01
 
@@ -60,9 +60,9 @@ def whole_body_warmth(
     whole = f"{said}, summed over {body:g} m²"
     skin = noticed_K("warm") / float(warmed.surface_K[-1])
     asked = [
-        Asked("flux just felt, full summation", "warm", "W/m²", whole, partial(_flux_felt, body), skin),
-        Asked("flux just felt, no summation", "warm", "W/m²", said, partial(_flux_felt, None), skin),
-        Asked("rise of the surface per W/m²", "warm", "K m²/W", said, lambda _: float(warmed.surface_K[-1])),
+        Query("flux just felt, full summation", "warm", "W/m²", whole, partial(_flux_felt, body), skin),
+        Query("flux just felt, no summation", "warm", "W/m²", said, partial(_flux_felt, None), skin),
+        Query("rise of the surface per W/m²", "warm", "K m²/W", said, lambda _: float(warmed.surface_K[-1])),
     ]
     return predict("whole-body warmth", asked, variable, draws, seed)
 

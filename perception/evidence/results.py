@@ -43,7 +43,7 @@ class Constant:
 
 @dataclass(frozen=True, slots=True)
 class OfRow:
-    """What belongs to a row of the likelihood."""
+    """A result for a row of the likelihood."""
 
     experiment: str
     statistic: str
@@ -140,7 +140,7 @@ def median_half_width(*, log: bool) -> float:
 
 @lru_cache(maxsize=1)
 def load_ablation() -> tuple[AblatedRow, ...]:
-    """What each mechanism is worth."""
+    """The worth of each mechanism."""
     return tuple(read_rows(ABLATION, AblatedRow))
 
 

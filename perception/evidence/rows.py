@@ -1,6 +1,6 @@
 """Published statistics as data, one number with its error in each row of the likelihood.
 
-`data/evidence.csv` has one row a statistic and `data/evidence.toml` one table an experiment; no trial data.
+`data/evidence.csv` has one row per statistic and `data/evidence.toml` one table per experiment; no trial data.
 """
 
 import csv
@@ -52,7 +52,7 @@ class Statistic(BaseModel):
 
 
 class Experiment(BaseModel):
-    """Where an experiment was published, under which licence, and how it asked."""
+    """The publication of an experiment, its licence, its method."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -123,7 +123,7 @@ DISCREPANCIES: dict[Kind, float] = {
 }
 """What a model of this kind may miss a row by, as a share of it (a correlation: by itself); assumed.
 
-That of spreads between and within people was chosen on left-out rows: coverage of spreads is no test of the model.
+That of spreads between and within people was chosen on left-out rows: coverage of spreads is not a test of the model.
 """
 WARM_WIDTH_BIAS, WARM_WIDTH_SPREAD_BIAS = 0.14, -0.05
 """What the fit of E4 adds to warm ln σ and to its spread in log10, found on simulated sets (evidence.toml)."""

@@ -37,7 +37,7 @@ Progress = Callable[[int, int, str], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Sampled:
+class SampledPosterior:
     """A sampled posterior: `chains` (chains, steps, n) in SDs of the prior after burn-in, and their diagnostics."""
 
     posterior: Posterior
@@ -69,7 +69,7 @@ def sample(
     least_steps: int = LEAST_STEPS,
     most_steps: int = MOST_STEPS,
     progress: Progress = lambda done, most, words: None,
-) -> Sampled:
+) -> SampledPosterior:
     """Sample until every constant has converged with draws to spare, or for `most_steps`: the seed alone decides."""
     start, most = maximise(posterior, shipped_vector(posterior)), CHAINS * most_steps
     pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn")) if workers > 1 else nullcontext(None)
@@ -90,7 +90,7 @@ def sample(
             found = diagnose(posterior.priors.names, _kept(chains, reference))
             enough = found.converged and float(found.ess.min()) > ENOUGH_ESS
             progress(len(points) + CHAINS * steps, len(points) + most, repr(found))
-    return Sampled(posterior, _kept(chains, reference), len(points) + CHAINS * steps, found, seed)
+    return SampledPosterior(posterior, _kept(chains, reference), len(points) + CHAINS * steps, found, seed)
 
 
 def _extended(part: tuple[Chain, Posterior, Reference, Surrogate, int]) -> Chain:

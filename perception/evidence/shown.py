@@ -10,7 +10,7 @@ from ..kernels.parallel import Progress, step_counter
 from ..observer.channels import VARIABLES, Variable
 from ..observer.mechanisms.age import OLD_YEARS
 from .experiments import first_and_return, limits, peak_lead, rate_curve, reaction_times
-from .identified import WAVES, Identified, Likeness, likeness, show, six_icons, wave_shapes
+from .identified import WAVES, Likeness, VariantConfusions, likeness, show, six_icons, wave_shapes
 from .predicted import Predicted
 from .pulses import short_pulses
 from .radiant import whole_body_warmth
@@ -23,8 +23,8 @@ class ShownEvidence:
     """Predictions of all variants, confusions, and likeness of the waves at the skin."""
 
     predicted: tuple[Predicted, ...]
-    six: tuple[Identified, ...]
-    waves: tuple[Identified, ...]
+    six: tuple[VariantConfusions, ...]
+    waves: tuple[VariantConfusions, ...]
     alike: tuple[Likeness, ...]
 
     def find(self, variable: Variable, experiment: str, quantity: str, channel: str, where: str = "") -> Predicted:

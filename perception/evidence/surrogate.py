@@ -72,7 +72,7 @@ class Surrogate:
 
     @np.errstate(over="ignore", invalid="ignore", divide="ignore")
     def walk(self, white: Array, random: np.random.RandomState, trajectories: int) -> Array:
-        """Where some Hamiltonian trajectories end, each accepted or not by the surrogate."""
+        """Ends of some Hamiltonian trajectories, each accepted or not by the surrogate."""
         density, gradient = self.log_density(white)
         for _ in range(trajectories):
             momentum = random.standard_normal(white.size)

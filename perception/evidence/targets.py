@@ -34,7 +34,7 @@ MINUS = "−"
 
 @dataclass(frozen=True, slots=True)
 class Published:
-    """What was published for a row (no numbers: a direction only); `fitted`: the constants were inferred from it."""
+    """The published result for a row (no numbers: a direction only); `fitted`: constants were inferred from it."""
 
     text: str
     source: str
@@ -130,7 +130,7 @@ def read_targets(text: str) -> tuple[Target, ...]:
 
 
 def published_for(row: TargetRow, table: RecordTable) -> Published:
-    """What a table has for a row; a `RecordError` where no record, or more than one, fits what the row names."""
+    """A table's result for a row; a `RecordError` where no record, or more than one, fits what the row names."""
     if not row.published:
         return Published(row.says or "–", "" if row.says else "nothing published")
     apply = row.published_apply or (row.apply if row.apply in PAIRED else "")

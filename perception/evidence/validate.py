@@ -56,7 +56,7 @@ class ReportRow:
 
     @property
     def baseline(self) -> float | None:
-        """What skin temperature alone predicts; None where it predicts nothing."""
+        """The prediction from skin temperature alone; None where there is none."""
         return self.judged[0].predicted.baseline
 
     @property
@@ -102,7 +102,7 @@ class ValidationReport(Tabled):
     evidence: ShownEvidence
 
     def counts(self, variant: int) -> tuple[int, int]:
-        """How many judged rows hold for a variant, of how many."""
+        """The number of judged rows that hold for a variant, and of all."""
         held = [line.judged[variant].verdict.holds for s in self.sections for line in s.lines if line.row.judged]
         return sum(one is True for one in held), len(held)
 

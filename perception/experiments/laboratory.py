@@ -1,7 +1,7 @@
 """A laboratory with one set of constants: drives of its stimuli, sensitivities of its people, answers.
 
-Its people and trials have the same quasi-random numbers for every set of constants: a change of a constant then changes
-a prediction smoothly, which a search for a maximum needs.
+The quasi-random numbers of people and trials are the same for every set of constants, so that predictions change
+smoothly with the constants, as a search for a maximum needs.
 """
 
 import math
@@ -116,7 +116,7 @@ class Laboratory:
 
     @cached_property
     def _receptors(self) -> dict[tuple[str, Channel], tuple[Array, float, float]]:
-        """What a site's receptors respond to a unit ramp, as long as was needed, rest at over 0 °C, and for each K."""
+        """Receptor responses of a site to a unit ramp, their rest at 0 °C, and its change per K."""
         return {}
 
     def _receptor(self, site_rig: str, channel: Channel, rows: int) -> tuple[Array, float, float]:

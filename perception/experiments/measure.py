@@ -62,7 +62,7 @@ DRAWS, LEAST_DRAWS = 100, 2
 @checked
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What was measured, and the ramp of the display it was measured with; changes and rates are without sign.
+    """A measured quantity with the ramp of the display used for it; changes and rates are without sign.
 
     Parameters
     ----------
@@ -115,12 +115,12 @@ class Condition:
 
     @property
     def words(self) -> str:
-        """How it is asked, in words."""
+        """The method in words."""
         return WORDS.get(self.kind, WORDS[self.method])
 
     @property
     def label(self) -> str:
-        """What it is in words."""
+        """The quantity in words."""
         words = f"{self.channel}, {self.words}"
         if self.kind == "threshold":
             return f"{words}, {self.rate_K_per_s:g} K/s"
@@ -210,7 +210,7 @@ def misnamed_of(laboratory: Laboratory, setting: Setting, condition: Condition) 
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """What new laboratories would measure under a condition; medians over laboratories.
+    """Predicted measurements of new laboratories under a condition; medians over laboratories.
 
     Attributes
     ----------

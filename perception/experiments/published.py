@@ -188,7 +188,7 @@ FORCED_CHOICE: tuple[tuple[str, str, str, dict[Channel, float]], ...] = (
 
 
 def forced_choice(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
-    """How many times threshold the published forced-choice thresholds are: 1 would be right (log 0)."""
+    """Published forced-choice thresholds in multiples of threshold: 1 would be right (log 0)."""
     for place, site, rig, sizes in FORCED_CHOICE:
         for channel, size in sizes.items():
             peak = Stimulated.of(laboratory, DisplayRamp.held(rig, channel, 32.0, size, 1.0, 3.0)).peak

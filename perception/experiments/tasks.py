@@ -42,7 +42,7 @@ class DisplayRamp:
 
     @property
     def corners(self) -> tuple[Corner, ...]:
-        """Where it ends: time in s and change in K."""
+        """The end of the ramp: time in s and change in K."""
         return ((self.size_K / self.rate_K_per_s, SIGN[self.channel] * self.size_K),)
 
 
@@ -80,7 +80,7 @@ class Stimulated:
         return constants.mislabelled(ramp.channel, mistaken, float(constants.psi(warm_gain * resting)[0]))
 
     def limits_K(self, gain: float, site: str) -> Array:
-        """How far the ramp has come at a press (people, trials), K; a second beyond its end where nobody pressed."""
+        """Change at a press (people, trials), K; a second beyond the ramp's end where nobody pressed."""
         rate = self.ramp.rate_K_per_s
         return np.minimum(rate * self.answers_s(gain, site), self.ramp.size_K + rate)
 

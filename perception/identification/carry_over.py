@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..kernels.parallel import in_order
-from ..observer.channels import NORMS, Norm
+from ..observer.channels import MEMORY_FORMS, MemoryForm
 from ..observer.observer import Observer
 from ..observer.people import draw_people
 from ..sensation.percept import perceive_many
@@ -33,19 +33,19 @@ PEOPLE = 32
 
 @dataclass(frozen=True, slots=True)
 class CarryOver:
-    """How far every icon (column) feels from itself alone after every other (row): `apart` (norms, icons, icons)."""
+    """d′ of every icon (column) after every other (row) from itself alone: `apart` (forms, icons, icons)."""
 
     names: tuple[str, ...]
     gap_s: float
     apart: Array
 
     def over(self, places: Sequence[int]) -> Array:
-        """Root mean square (norms, icons) over some icons before, each of them as likely as the next."""
+        """Root mean square (forms, icons) over some icons before, each of them as likely as the next."""
         return np.asarray(np.sqrt((self.apart[:, list(places)] ** 2).mean(axis=1)))
 
-    def worst_of(self, place: int, norm: Norm, places: Sequence[int] = ()) -> tuple[str, float]:
+    def worst_of(self, place: int, form: MemoryForm, places: Sequence[int] = ()) -> tuple[str, float]:
         """After which icon (of some) one feels least like itself, and by how many d′ from memory."""
-        k, some = NORMS.index(norm), list(places or range(len(self.names)))
+        k, some = MEMORY_FORMS.index(form), list(places or range(len(self.names)))
         before = some[int(self.apart[k, some, place].argmax())]
         return self.names[before], float(self.apart[k, before, place])
 
@@ -84,14 +84,14 @@ def carry_over(
             return np.stack(psi)
 
         alone = felt(*(received[:, :rows] for received in met))
-        apart = np.empty((len(NORMS), len(icons), len(icons)))
+        apart = np.empty((len(MEMORY_FORMS), len(icons), len(icons)))
         for before, wait in enumerate(waits):
             parts = zip(left, met, strict=True)
             after = felt(*(_after(own[before], received, wait, rows) for own, received in parts))[..., wait:]
             pairs = np.stack([alone, after], axis=2)
             episodes = Episodes.of(pairs[0], pairs[1], dt, person, [[icon.name] for icon in icons])
-            for k, norm in enumerate(NORMS):
-                apart[k, before] = episode_distances(episodes, episodes, person, norm)[:, 0, 1]
+            for k, form in enumerate(MEMORY_FORMS):
+                apart[k, before] = episode_distances(episodes, episodes, person, form)[:, 0, 1]
         return apart
 
     people = draw_people(PEOPLE)

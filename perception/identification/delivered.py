@@ -15,7 +15,7 @@ import numpy as np
 from thermicon.circuit.delivery.delivered_drive import loss_limit
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS, USUAL_NORM, Channel
+from ..observer.channels import CHANNELS, USUAL_MEMORY, Channel
 from ..observer.observer import Observer
 from ..observer.people import draw_people
 from ..sensation.percept import Percept, perceive
@@ -141,7 +141,7 @@ def detected_as_delivered(
 
 
 def _change(met_K: Array, channel: Channel, designed: Trace, delivered: Trace, at_s: Array) -> Array:
-    """What the device changes (people, icons, n_time), K: for the nominal person, in proportion to each `met_K`."""
+    """The device's change (people, icons, n_time), K: the nominal person's, in proportion to each `met_K`."""
     before, after = (np.interp(at_s, t.time_s, getattr(t, f"{channel}_receptor_C")) for t in (designed, delivered))
     icon = before - before[0]
     size = float(icon @ icon)
@@ -151,4 +151,4 @@ def _change(met_K: Array, channel: Channel, designed: Trace, delivered: Trace, a
 
 def _d_primes(percepts: Sequence[Percept], names: Sequence[str]) -> Array:
     felt = np.array([p.psi_cold for p in percepts]), np.array([p.psi_warm for p in percepts])
-    return dprimes_from_memory(felt, felt, percepts[0].dt_s, Observer.load(), USUAL_NORM, (names, names))
+    return dprimes_from_memory(felt, felt, percepts[0].dt_s, Observer.load(), USUAL_MEMORY, (names, names))

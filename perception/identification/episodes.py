@@ -16,7 +16,7 @@ from thermicon.icons.model.arguments import InputError
 
 from ..arrays import Array
 from ..kernels.parallel import over_rows
-from ..observer.channels import CHANNELS, Channel, Norm
+from ..observer.channels import CHANNELS, Channel, MemoryForm
 from ..observer.observer import Observer
 from ..sensation.percept import Percept, on_one_clock
 
@@ -101,9 +101,9 @@ class Episodes:
             )
         return tuple(listed)
 
-    def scaled(self, norm: Norm, observer: Observer) -> Episodes:
-        """The same with intensities on the scale of a norm: ln of drive, or ratings in points."""
-        if norm != "naming":
+    def scaled(self, form: MemoryForm, observer: Observer) -> Episodes:
+        """The same with intensities on the scale of a form of memory: ln of drive, or ratings in points."""
+        if form != "naming":
             return self
         from ..kernels import episodes as kernel
 
@@ -118,23 +118,25 @@ class Episodes:
         return Episodes(features, self.counts)
 
 
-def intensity_noise(norm: Norm, observer: Observer, memory: Array) -> Array:
-    """σ_I (people, 2) of cold and warm on the scale of a norm; `memory` (people,) multiplies it."""
+def intensity_noise(form: MemoryForm, observer: Observer, memory: Array) -> Array:
+    """σ_I (people, 2) of cold and warm on the scale of a form of memory; `memory` (people,) multiplies it."""
     noise = np.array([observer.intensity_noise(channel) for channel in CHANNELS])
-    if norm == "naming":
+    if form == "naming":
         noise = noise * (np.array(observer.rating_exponent) * np.array(observer.mean_rating))
     return np.asarray(memory[:, None] * noise[None, :])
 
 
-def episode_distances(one: Episodes, other: Episodes, observer: Observer, norm: Norm, memory: ArrayLike = 1.0) -> Array:
+def episode_distances(
+    one: Episodes, other: Episodes, observer: Observer, form: MemoryForm, memory: ArrayLike = 1.0
+) -> Array:
     """d′ from memory (people, n, m) of each icon of one to each of the other; `memory` (people,) multiplies noise."""
     from ..kernels import alignment
 
     people = len(one)
     own = np.broadcast_to(np.asarray(memory, dtype=np.float64), (people,))
-    first = one.scaled(norm, observer)
-    second = first if other is one else other.scaled(norm, observer)
-    intensity, timing = intensity_noise(norm, observer, own), observer.timing_noise * own
+    first = one.scaled(form, observer)
+    second = first if other is one else other.scaled(form, observer)
+    intensity, timing = intensity_noise(form, observer, own), observer.timing_noise * own
     apart = np.empty((people, one.counts.shape[1], other.counts.shape[1]))
 
     def work(part: slice) -> None:
@@ -147,7 +149,9 @@ def episode_distances(one: Episodes, other: Episodes, observer: Observer, norm: 
     return apart
 
 
-def distance_shares(one: Episodes, i: int, other: Episodes, j: int, observer: Observer, norm: Norm) -> dict[str, float]:
+def distance_shares(
+    one: Episodes, i: int, other: Episodes, j: int, observer: Observer, form: MemoryForm
+) -> dict[str, float]:
     """Parts of d′² between two icons for the first person, by the names of `PARTS`, without their sign.
 
     Where the alignment leaves out episodes of the same qualities in the same order, d′² is divided as the features are.
@@ -155,10 +159,10 @@ def distance_shares(one: Episodes, i: int, other: Episodes, j: int, observer: Ob
     from ..kernels import alignment
     from ..kernels.episodes import QUALITY
 
-    intensity, timing = intensity_noise(norm, observer, np.ones(1))[0], observer.timing_noise
+    intensity, timing = intensity_noise(form, observer, np.ones(1))[0], observer.timing_noise
     shares, total, own = np.empty(alignment.SHARES), np.zeros(alignment.SHARES), np.empty(alignment.SHARES)
     first, second = (
-        held.scaled(norm, observer).features[0, k, : held.counts[0, k]] for held, k in ((one, i), (other, j))
+        held.scaled(form, observer).features[0, k, : held.counts[0, k]] for held, k in ((one, i), (other, j))
     )
     alignment.aligned(first, len(first), second, len(second), intensity, timing, shares)
     if shares[alignment.MISSING] > 0.0 and np.array_equal(first[:, QUALITY], second[:, QUALITY]):
@@ -181,7 +185,7 @@ def dprimes_from_memory(
     other: tuple[Array, Array],
     dt_s: float,
     observer: Observer,
-    norm: Norm,
+    form: MemoryForm,
     names: tuple[ArrayLike, ArrayLike],
 ) -> Array:
     """d′ (n, m) of icons to icons for the nominal memory, from sensations (icons, n_time) of cold and of warm."""
@@ -189,4 +193,4 @@ def dprimes_from_memory(
         Episodes.of(cold[None], warm[None], dt_s, observer, called)
         for (cold, warm), called in zip((one, other), names, strict=True)
     )
-    return np.asarray(episode_distances(first, second, observer, norm)[0])
+    return np.asarray(episode_distances(first, second, observer, form)[0])

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
-from ..observer.channels import Norm
+from ..observer.channels import MemoryForm
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from .depths import rungs
@@ -71,7 +71,7 @@ class NewLaboratory:
         }
 
     def ahead_of(self, other: NewLaboratory) -> float:
-        """How often a person names these icons better than the other's, on the same draws; a tie counts half."""
+        """The share of draws in which a person names these icons better than the other's; a tie counts half."""
         mine, theirs = self.each.persons_correct[..., None], other.each.persons_correct[:, None]
         if mine.shape[1] == theirs.shape[2]:
             mine, theirs = self.each.persons_correct, other.each.persons_correct
@@ -95,7 +95,7 @@ class NewLaboratory:
 
 @dataclass(frozen=True, slots=True)
 class Nominal:
-    """What intervals are laid about: the prediction for many people at the nominal constants."""
+    """The centre of intervals: the prediction for many people at the nominal constants."""
 
     proportion_correct: float
     information_bits: float
@@ -111,7 +111,7 @@ def new_laboratory(
     end_s: float,
     crowd: People,
     predicted: Nominal,
-    norm: Norm,
+    form: MemoryForm,
     *,
     tracking: str | None = None,
     model: ObserverModel | None = None,
@@ -135,10 +135,10 @@ def new_laboratory(
         RATE_HZ / (EVERY if count <= MANY else 2 * EVERY), tracking,
     )  # fmt: skip
     each = laboratory_draws(
-        lambda _: few, persons, norm, own, draws=draws, seed=seed, task=task, resampled=True, step=step
+        lambda _: few, persons, form, own, draws=draws, seed=seed, task=task, resampled=True, step=step
     )
     # Means over all the people of the nominal observer: their sample belongs to the draw.
-    centre = scored(few, persons, own.nominal, norm, seed, task, np.arange(len(persons)))
+    centre = scored(few, persons, own.nominal, form, seed, task, np.arange(len(persons)))
     tops = (1.0, math.log2(count), 1.0, math.inf, math.inf, 1.0)
     moved: dict[str, Any] = {}
     for name, own_values, top in zip(Nominal.__slots__, centre[:6], tops, strict=True):

@@ -18,7 +18,7 @@ from thermicon.circuit.records import RecordTable
 
 from ..arrays import Array
 from ..kernels.parallel import in_order
-from ..observer.channels import Norm, Variable
+from ..observer.channels import MemoryForm, Variable
 from ..observer.constants import name_of
 from ..observer.mechanisms.memory import MEMORY_NAMES, MISSING
 from ..observer.observer import Observer, variant_records
@@ -74,8 +74,8 @@ def latin(parameters: int, draws: int, seed: int) -> Array:
     return np.asarray((strata + rng.random(strata.shape)) / draws)
 
 
-def memory_parameters(norm: Norm, records: RecordTable | None = None) -> tuple[Uncertain, ...]:
-    """The uncertain constants of memory that a norm makes use of, by the records of an observer (None: the shipped).
+def memory_parameters(form: MemoryForm, records: RecordTable | None = None) -> tuple[Uncertain, ...]:
+    """The uncertain constants of memory that a form makes use of, by the records of an observer (None: the shipped).
 
     >>> [parameter.name for parameter in memory_parameters("episodes")]
     ['share of the scatter of ratings', 'bar of an episode', 'memory noise (episodes)']
@@ -84,7 +84,7 @@ def memory_parameters(norm: Norm, records: RecordTable | None = None) -> tuple[U
     for record in variant_records() if records is None else records:
         name = name_of(record)
         low, high = record.interval
-        if name in MEMORY_NAMES and (name != MISSING or norm == "naming") and low < high:
+        if name in MEMORY_NAMES and (name != MISSING or form == "naming") and low < high:
             found.append(Uncertain(name, low, high, record.unit))
     return tuple(found)
 
@@ -103,11 +103,11 @@ class DrawnLaboratories:
     age_years: float | None
 
     @classmethod
-    def of(cls, model: ObserverModel, norm: Norm, draws: int, seed: int) -> DrawnLaboratories:
+    def of(cls, model: ObserverModel, form: MemoryForm, draws: int, seed: int) -> DrawnLaboratories:
         """As many laboratories of a model as `draws`; a ValueError for an observer without draws."""
         held = model.drawn
         chosen = held.spaced(draws)
-        free = [p for p in memory_parameters(norm, records=model.records) if p.name not in held.memory_names]
+        free = [p for p in memory_parameters(form, records=model.records) if p.name not in held.memory_names]
         shares = latin(len(free), draws, seed).tolist()
         memory = [[p.at(share) for p, share in zip(free, row, strict=True)] for row in shares]
         offsets, free_memory = held.new_laboratory(seed)[chosen], np.reshape(memory, (draws, len(free)))
@@ -178,7 +178,7 @@ class LaboratoryDraws:
 def laboratory_draws(
     played: Callable[[int], ReceptorTemperatures],
     persons: People,
-    norm: Norm,
+    form: MemoryForm,
     model: ObserverModel,
     *,
     draws: int,
@@ -192,12 +192,12 @@ def laboratory_draws(
     `played` says what the receptors of the persons go through in a draw, by its number. Every draw has its own people
     with the same seed, and invites a random sample of them (`resampled`), or all of them once.
     """
-    laboratories, count = DrawnLaboratories.of(model, norm, draws, seed), len(persons)
+    laboratories, count = DrawnLaboratories.of(model, form, draws, seed), len(persons)
     invited = laboratories.invited(count) if resampled else np.tile(np.arange(count), (draws, 1))
 
     def one(place: int) -> tuple[Array, ...]:
         observer, people = laboratories.at(place, count)
-        return scored(played(place), people, observer, norm, seed, task, invited[place])
+        return scored(played(place), people, observer, form, seed, task, invited[place])
 
     found = []
     for scores in in_order(one, list(range(draws))):
@@ -205,12 +205,12 @@ def laboratory_draws(
         if step is not None:
             step()
     each = (np.stack([scores[k] for scores in found]) for k in range(9))
-    acting = cache(partial(_acting, laboratories, played(0), min(count, FEW), norm, seed, task))
+    acting = cache(partial(_acting, laboratories, played(0), min(count, FEW), form, seed, task))
     return LaboratoryDraws(laboratories.names, laboratories.values, acting, *each)
 
 
 def _acting(
-    laboratories: DrawnLaboratories, played: ReceptorTemperatures, count: int, norm: Norm, seed: int, task: Task
+    laboratories: DrawnLaboratories, played: ReceptorTemperatures, count: int, form: MemoryForm, seed: int, task: Task
 ) -> NDArray[np.bool_]:
     """Whether each constant (constants,), moved alone as far as the draws go, changes what a few people say."""
     few, values = played.first(count), laboratories.values
@@ -218,7 +218,7 @@ def _acting(
     def named(constants: Array) -> Array:
         observer, people = laboratories.with_values(constants, count)
         felt = respond(few, people, observer, detection=False)
-        d_prime, confusion = identify(felt, norm, people, observer, seed, LEAST, task=task)
+        d_prime, confusion = identify(felt, form, people, observer, seed, LEAST, task=task)
         return np.stack([d_prime, confusion.probability])
 
     def acts(k: int) -> bool:
@@ -234,15 +234,15 @@ def scored(
     few: ReceptorTemperatures,
     people: People,
     observer: Observer,
-    norm: Norm,
+    form: MemoryForm,
     seed: int,
     task: Task,
     invited: NDArray[np.int64],
 ) -> tuple[Array, ...]:
-    """Scores of those who are invited (correct, bits, detected, d′, onset, confusions), and of each single one."""
+    """Scores of the invited people (correct, bits, detected, d′, onset, confusions), and of each single one."""
     samples = min(SAMPLES, max(LEAST, NAMED // len(few.names)))
     felt = respond(few, people, observer, times=True)
-    d_prime, confusion = identify(felt, norm, people, observer, seed, samples, task=task)
+    d_prime, confusion = identify(felt, form, people, observer, seed, samples, task=task)
     correct, bits = proportion_correct(confusion.probability), information_bits(confusion.probability)
     named, found = confusion.probability[invited].mean(axis=0), felt.detected
     reported = found.courses[invited].sum(axis=0)

@@ -65,7 +65,7 @@ def information_bits(confusion: ArrayLike) -> Array:
 
 
 def plugin_bits(confusion: ArrayLike, trials: int, seed: int = 0, experiments: int = 1000) -> float:
-    """What each person's `experiments` of `trials` trials report in the mean by the plug-in estimator, bits."""
+    """The mean of `experiments` of `trials` trials of each person by the plug-in estimator, bits."""
     people = np.asarray(confusion, dtype=np.float64)
     return float(experiments_bits(people[None] if people.ndim == 2 else people, trials, seed, experiments).mean())
 

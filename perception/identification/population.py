@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
-from ..observer.channels import Norm
+from ..observer.channels import MemoryForm
 from ..observer.constants import Both
 from ..observer.observer import Observer
 from ..observer.people import People
@@ -137,7 +137,7 @@ class PopulationResponse:
 def respond(
     played: ReceptorTemperatures, crowd: People, observer: Observer, *, detection: bool = True, times: bool = False
 ) -> PopulationResponse:
-    """Episodes of every icon for every person, and whether it is reported (`detection`), and when (`times`)."""
+    """Episodes of every icon for every person, optionally with detection and with the times of its reports."""
     cold, warm, dt = _sensations(played, crowd, observer)
     found = _detection(cold, warm, dt, played.site, crowd, observer, times) if detection else None
     return PopulationResponse(Episodes.of(cold, warm, dt, observer, played.names), found)
@@ -181,18 +181,18 @@ def _detection(
     )
 
 
-def memory_dprime(felt: PopulationResponse, norm: Norm, memory: Array, observer: Observer, task: Task) -> Array:
-    """Pairwise d′ from memory (people, icons, icons) by one norm; `memory` (people,) multiplies the memory noise."""
-    apart: Array = episode_distances(felt.episodes, felt.episodes, observer, norm, memory)
+def memory_dprime(felt: PopulationResponse, form: MemoryForm, memory: Array, observer: Observer, task: Task) -> Array:
+    """Pairwise d′ from memory (people, icons, icons) by one form; `memory` (people,) multiplies its noise."""
+    apart: Array = episode_distances(felt.episodes, felt.episodes, observer, form, memory)
     if task.carried:
         noise = memory[:, None, None]
-        apart = apart * noise / task.between(noise, norm)
+        apart = apart * noise / task.between(noise, form)
     return apart
 
 
 def identify(
     felt: PopulationResponse,
-    norm: Norm,
+    form: MemoryForm,
     crowd: People,
     observer: Observer,
     seed: int,
@@ -201,10 +201,10 @@ def identify(
     task: Task = USUAL,
 ) -> tuple[Array, Confusion]:
     """Pairwise d′ from memory (people, icons, icons), and confusions with the noise of people numbered from `first`."""
-    d_prime = memory_dprime(felt, norm, crowd.memory, observer, task)
-    if norm == "naming":
+    d_prime = memory_dprime(felt, form, crowd.memory, observer, task)
+    if form == "naming":
         named = name_directly(
-            felt.episodes, observer, memory=crowd.memory, louder=task.louder(crowd.memory, norm), lapse=crowd.lapse,
+            felt.episodes, observer, memory=crowd.memory, louder=task.louder(crowd.memory, form), lapse=crowd.lapse,
             seed=seed, samples=min(samples, NAMED_SAMPLES), first=first,
         )  # fmt: skip
         return d_prime, named

@@ -20,7 +20,7 @@ from ..arrays import Array
 from ..observer.channels import source_of
 from ..observer.constants import QUANTITIES
 from ..observer.mechanisms.memory import NOISE
-from ..observer.observer import NORMS, Norm, Observer
+from ..observer.observer import MEMORY_FORMS, MemoryForm, Observer
 from ..sensation.bench import Bench, Stimulus, ramp
 from ..sensation.percept import perceive_many
 from .episodes import Episodes, episode_distances
@@ -120,7 +120,7 @@ class Task:
     gap_s
         Time from the end of one icon to the next, 0 to 600 s; None: all has faded.
     carried
-        What the icons before change of each (norms, icons), d′.
+        What the icons before change of each (forms, icons), d′.
     counted
         Places of the icons that will be played; none: all.
 
@@ -145,16 +145,16 @@ class Task:
         if self.gap_s is not None and not 0.0 <= self.gap_s <= LONGEST_GAP_S:
             raise ValueError(f"a gap of {self.gap_s:g} s between icons must lie in 0 to {LONGEST_GAP_S:g} s")
 
-    def between(self, noise: Array, norm: Norm) -> Array:
+    def between(self, noise: Array, form: MemoryForm) -> Array:
         """Noise (people, icons, icons) between icons that also vary with what was felt before them."""
-        own = np.array(self.carried[NORMS.index(norm)])
+        own = np.array(self.carried[MEMORY_FORMS.index(form)])
         return np.asarray(np.sqrt(noise**2 + 0.5 * (own[:, None] ** 2 + own[None, :] ** 2)))
 
-    def louder(self, memory: Array, norm: Norm) -> Array | float:
+    def louder(self, memory: Array, form: MemoryForm) -> Array | float:
         """Multiples (people, icons) of the noise of icons that also vary with what was felt before them."""
         if not self.carried:
             return 1.0
-        own = np.array(self.carried[NORMS.index(norm)])
+        own = np.array(self.carried[MEMORY_FORMS.index(form)])
         return np.asarray(np.hypot(1.0, own[None, :] / memory[:, None]))
 
 

@@ -87,7 +87,7 @@ Progress = Callable[[int, int], None]
 
 
 def step_counter(progress: Progress | None, total: int) -> Callable[[], None]:
-    """What is called after each of `total` steps; where there are more after all, the total grows.
+    """A function to call after each of `total` steps; where there are more after all, the total grows.
 
     >>> step = step_counter(lambda done, total: print(f"{done} of {total}"), 2)
     >>> step(); step()

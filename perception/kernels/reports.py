@@ -88,7 +88,7 @@ def _report(
 
 
 def _changing(psi: Any) -> tuple[int, int]:
-    """The first sample that differs from the one at the start (`psi.size`: none does), and the end of those that do.
+    """The first sample that differs from the one at the start (`psi.size`: none does), and the end of such samples.
 
     The end is one past the sample at which the course is back where it started, if it is.
     """

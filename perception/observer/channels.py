@@ -9,11 +9,11 @@ from collections.abc import Mapping
 from typing import Literal, get_args
 
 Channel = Literal["cold", "warm"]
-Norm = Literal["episodes", "naming"]
+MemoryForm = Literal["episodes", "naming"]
 CHANNELS: tuple[Channel, ...] = get_args(Channel)
-NORMS: tuple[Norm, ...] = get_args(Norm)
+MEMORY_FORMS: tuple[MemoryForm, ...] = get_args(MemoryForm)
 """How the episodes of an icon are remembered: in logarithms, or as ratings that are named directly."""
-USUAL_NORM: Norm = "episodes"
+USUAL_MEMORY: MemoryForm = "episodes"
 
 
 SIGN: Mapping[Channel, float] = {"cold": -1.0, "warm": 1.0}
@@ -33,7 +33,7 @@ def check_variable(variable: str) -> Variable:
 
 
 def source_of(variable: Variable) -> str:
-    """How the parameter file ends the name of a number that depends on the variant; nothing for the default."""
+    """The ending of a number's name in the parameter file for a variant; empty for the default."""
     return "" if variable == "temperature" else " from heat flow"
 
 

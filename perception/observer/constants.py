@@ -77,7 +77,7 @@ def names_of(kind: Any, *chosen: str) -> tuple[str, ...]:
 
 
 def ranges_of(kind: Any) -> dict[str, Range]:
-    """Where values of the constants lie, by name."""
+    """Ranges of the constants, by name."""
     return {name: each.metadata["within"] for each in constants_of(kind) for name in each.metadata["names"]}
 
 
@@ -147,7 +147,7 @@ BETWEEN_LABORATORIES = "sensitivity between laboratories"
 
 
 def offsets_in(values: Mapping[str, float], places: Sequence[str]) -> dict[str, Both[float]]:
-    """How much more sensitive (ln) the people of laboratories are, from values by name."""
+    """Sensitivity of laboratories' people above the usual (ln), from values by name."""
     spread = values[BETWEEN_LABORATORIES]
     return {place: Both(*(spread * values[f"{place} {channel}"] for channel in CHANNELS)) for place in places}
 

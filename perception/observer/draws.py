@@ -69,7 +69,7 @@ class PosteriorDraws:
 
     @property
     def variable(self) -> Variable:
-        """What the receptors go by."""
+        """The receptor input."""
         return self.header.variable
 
     def values(self, name: str) -> Array:
@@ -115,7 +115,7 @@ class PosteriorDraws:
         return [round(k) for k in np.linspace(0, len(self) - 1, count).tolist()]
 
     def new_laboratory(self, seed: int = 0) -> Array:
-        """How much more sensitive (ln) the people of a new laboratory are, (n, 2) for cold and warm in every draw.
+        """Sensitivity of a new laboratory's people above the usual (ln), (n, 2) for cold and warm in every draw.
 
         The spread is the draw's own; the same seed gives the same laboratory in standard units.
         """

@@ -41,7 +41,7 @@ APPROXIMATE = "normal approximation"
 
 @dataclass(frozen=True, slots=True)
 class DrawsHeader:
-    """What a table of draws was made from: digests, variant, sampler and diagnostics, all as text in the file.
+    """The origin of a table of draws: digests, variant, sampler and diagnostics, all as text in the file.
 
     `r_hat` is the largest and `ess` the least over all constants. Draws of one laboratory say how they were
     `resampled`, and on which `rig` it played; others leave both empty.
@@ -97,7 +97,7 @@ OF_LABORATORY: Mapping[str, str] = {"resampled": "resampled", "rig": "rig"}
 
 
 def shipped_file(variable: Variable) -> Path:
-    """Where the shipped draws of a variant lie."""
+    """The path of the shipped draws of a variant."""
     return DATA / ("posterior.csv" if variable == VARIABLES[0] else f"posterior-{variable.replace(' ', '-')}.csv")
 
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from thermicon.circuit.records import RecordError, RecordTable, load_records
 
-from .channels import CHANNELS, NORMS, VARIABLES, Channel, Norm, Variable, check_variable, source_of
+from .channels import CHANNELS, MEMORY_FORMS, VARIABLES, Channel, MemoryForm, Variable, check_variable, source_of
 from .constants import fields_from, objection_to, values_in, values_of
 from .mechanisms.adaptation import Adaptation
 from .mechanisms.age import Age
@@ -33,7 +33,7 @@ from .mechanisms.summation import Summation
 from .mechanisms.tissue import Tissue
 from .mechanisms.transducer import Transducer
 
-__all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "load_thresholds"]
+__all__ = ["CHANNELS", "MEMORY_FORMS", "Channel", "MemoryForm", "Observer", "load_thresholds"]
 DATA = Path(__file__).parents[1] / "data"
 CURE = (
     f"begin with a copy of the shipped file, {DATA / 'observer.toml'}, and change numbers there; or infer all of them "

@@ -15,7 +15,7 @@ from thermicon.circuit.inputs import InputError
 from thermicon.circuit.records import RecordError, RecordTable
 from thermicon.icons.model.arguments import checked
 
-from .channels import CHANNELS, USUAL_NORM, VARIABLES, Norm
+from .channels import CHANNELS, USUAL_MEMORY, VARIABLES, MemoryForm
 from .draws import PosteriorDraws
 from .observer import DATA, Observer, read_records, variant_records
 from .people import People, draw_people
@@ -109,7 +109,7 @@ class ObserverModel:
 
     @property
     def key(self) -> str:
-        """What results depend on, for hashes; empty for the shipped model, whose data belong to the program."""
+        """The identity of the model for hashes; empty for the shipped one, whose data belong to the program."""
         own = "" if self.name == SHIPPED else self.digest
         return own if self.age_years is None else f"{own} people of {self.age_years:g} years"
 
@@ -128,26 +128,26 @@ class CrowdWords(TypedDict, total=False):
     people: int
     seed: int
     tracking: Tracking | None
-    memory: Norm
+    memory: MemoryForm
     observer: AnyObserver | None
 
 
 @checked
 @dataclass(frozen=True, slots=True)
 class Crowd:
-    """Who feels icons and remembers them: what `rank` and its kin take as `crowd`, or each word of it by its name.
+    """Virtual people who feel and remember icons: the argument `crowd` of `rank` and others, or its fields by name.
 
     Attributes
     ----------
     people
         Number of virtual people; `plan` and `observed` have the participants of every laboratory instead.
     seed
-        What they and all noise are drawn from.
+        Seed of the people and of all noise.
     tracking
-        What is the same for all of them: `replay` (the current), `display` (the temperature of the display) or `ideal`
-        (that of the skin); None: what suits the control of each icon.
+        What every virtual person receives: `replay` (the same current), `display` (the same display temperature) or
+        `ideal` (the same skin temperature); None: by the control of each icon.
     memory
-        How icons are remembered: `episodes` (compared in logarithms) or `naming` (as ratings, each trial named
+        Form of memory: `episodes` (compared in logarithms) or `naming` (as ratings, each trial named
         directly).
     observer
         Another observer with its posterior, or the file of one; None: the shipped one. One without draws gives no
@@ -167,7 +167,7 @@ class Crowd:
     people: int = 200
     seed: int = 0
     tracking: Tracking | None = None
-    memory: Norm = USUAL_NORM
+    memory: MemoryForm = USUAL_MEMORY
     observer: AnyObserver | None = None
 
     def __post_init__(self) -> None:

@@ -19,7 +19,7 @@ from thermicon.circuit.cores import quiet_blas
 from ..arrays import Array
 from ..experiments.measure import Setting
 from .likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights, walk
-from .measurement_likelihood import Emulated, SimulatedMeasurements, log_likelihood, predicted
+from .measurement_likelihood import Emulator, SimulatedMeasurements, log_likelihood, predicted
 from .measurements_file import Measurements
 from .playing import Confusions, Stage
 from .prediction import Fit, MeasurementFit, compare, compare_measurements
@@ -35,12 +35,12 @@ NEAR_ANSWERS, NEAR_VALUES = 2.0, 25.0
 """Ln L by which a laboratory is less likely than those near the data if it counts half in a fit: those far from the
 data keep the polynomial from bending there, and count for little else."""
 Step = Callable[[], None]
-Data: TypeAlias = "Answered | MeasuredValues"
+Data: TypeAlias = "Namings | MeasuredValues"
 
 
 @dataclass(frozen=True, slots=True)
 class Conditioned:
-    """What data make of the laboratories `before`, which were weighed; `after` is a sample of equal weights.
+    """The weighed laboratories `before` data, and `after`, a sample of equal weights.
 
     `effective` is the effective sample size of the weights, `effective_after` how many independent draws stand behind
     `after`, `rounds` how often fresh laboratories were simulated (0: the weights sufficed).
@@ -131,7 +131,7 @@ def systematic(weights: Array, n: int, rng: np.random.Generator) -> NDArray[np.i
 
 
 @dataclass(frozen=True)
-class Answered:
+class Namings:
     """Answers to a set, which the people of every laboratory are asked to name as well.
 
     `by_people`: they depend on who the people are. Those who are kept must then be others, and the likelihood of
@@ -225,7 +225,7 @@ class MeasuredValues:
 
     def polynomial(self, place: Array, simulated: SimulatedMeasurements, short: Array) -> Callable[[Array], Array]:
         """Ln likelihood with polynomials for means, covariances and scatter."""
-        return Emulated.fit(self.measurements, place, simulated, 1.0 / (1.0 + short / NEAR_VALUES))
+        return Emulator.fit(self.measurements, place, simulated, 1.0 / (1.0 + short / NEAR_VALUES))
 
     def compare(self, simulated: SimulatedMeasurements, seed: int) -> MeasurementFit:
         """Group means beside those of the same measurements in these laboratories."""

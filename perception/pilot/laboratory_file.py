@@ -62,7 +62,7 @@ def laboratory_draws(
 
 
 def how_resampled(laboratories: int, effective: float, rounds: int) -> str:
-    """How laboratories were resampled, in a few words."""
+    """The way of resampling laboratories, in a few words."""
     if not rounds:
         return f"by weights from {laboratories} laboratories, effective sample size {effective:.0f}"
     times = "1 round" if rounds == 1 else f"{rounds} rounds"
@@ -86,7 +86,7 @@ def _narrowed(record: Record, each: Mapping[str, Array], remembered: Sequence[st
     if name not in each or record.value is None or not (name in remembered or record.method.startswith("draw ")):
         return record
     low, high = (float(f"{number:.5g}") for number in np.percentile(each[name], [2.5, 97.5]).tolist())
-    # The method of a record is the norm where it is memory's, and must then stay.
+    # The method of a record is the form of memory where it is one of memory, and must then stay.
     method = record.method if name == NOISE else "conditioned on a laboratory's own answers"
     low, high = min(low, record.value), max(high, record.value)
     return replace(record, low=low, high=high, method=method, use="calibrate")

@@ -93,7 +93,7 @@ class PooledLikelihood:
         seen: Array = np.linalg.solve(root, counts.sum(axis=0).ravel() - mean.mean(axis=0))
         whitened = whitened - whitened.mean(axis=0)
         features, pairs, smooth = smooth_features(place, whitened, own)
-        # Directions of the smooth part: what differs by who the simulated people are is no sign of a laboratory.
+        # Directions of the smooth part: differences between simulated people are not a property of a laboratory.
         sizes, turned = np.linalg.eigh(np.cov(smooth.T, aweights=own))
         used = np.flatnonzero(sizes > LEAST_RATIO)[::-1][:DIRECTIONS]
         turned = turned[:, used] if used.size else turned[:, -1:]

@@ -120,7 +120,7 @@ def _rated(measured: Measurements) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class Emulated:
+class Emulator:
     """Ln likelihood at coordinates (n, d), from polynomials for mean, covariance and scatter of trials."""
 
     measured: Measurements
@@ -129,7 +129,7 @@ class Emulated:
     pairs: tuple[tuple[int, int], ...]
 
     @classmethod
-    def fit(cls, measured: Measurements, place: Array, each: SimulatedMeasurements, weight: Array) -> Emulated:
+    def fit(cls, measured: Measurements, place: Array, each: SimulatedMeasurements, weight: Array) -> Emulator:
         """Fit to simulated laboratories, each of which counts by its `weight` (n,)."""
         targets, own = _flat(each), weight / weight.mean()
         features, pairs, _ = smooth_features(place, targets / targets.std(axis=0).clip(1e-9), own)

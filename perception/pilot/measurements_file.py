@@ -1,4 +1,4 @@
-"""The reader of measured thresholds, reaction times and ratings.
+"""The reader of files with measured thresholds, reaction times or ratings.
 
 Each value has a condition that can be simulated. The door reads a CSV file of values, or says what is wrong with it.
 """
@@ -88,7 +88,7 @@ class Measurements:
 
     @property
     def given(self) -> Array:
-        """Where there is a value (participants, conditions)."""
+        """Presence of a value (participants, conditions)."""
         return ~np.isnan(self.values)
 
     @property
@@ -190,7 +190,7 @@ def _check_columns(file: Path, header: Sequence[str]) -> None:
 
 
 def _row(cells: Mapping[str, str], where: str, rig: Rig) -> tuple[tuple[str, Condition], tuple[float, float, float]]:
-    """Who and under which condition, and what was found: value, standard error, trials."""
+    """Participant, condition and result of a row: value, standard error, trials."""
     kind = cast("Kind", _one_of(cells["kind"], "kind", tuple(FACTORS), where))
     channel = cast("Channel", _one_of(cells["channel"], "channel", CHANNELS, where))
     methods, what = METHODS[kind], kind.replace("_", " ")

@@ -20,7 +20,7 @@ from ..experiments.measure import Setting
 from ..kernels.parallel import Progress, step_counter
 from ..observer.draws import PosteriorDraws
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
-from .conditioning import Answered, Conditioned, MeasuredValues, condition
+from .conditioning import Conditioned, MeasuredValues, Namings, condition
 from .laboratory_file import laboratory_draws, laboratory_texts
 from .measurements_file import Measurements
 from .playing import Confusions, Stage, laboratories_for, stage
@@ -34,13 +34,13 @@ if TYPE_CHECKING:
     from thermicon.icons import IconSet
 
 DRAWS, LEAST_DRAWS = 1000, 20
-D = TypeVar("D", Answered, MeasuredValues)
+D = TypeVar("D", Namings, MeasuredValues)
 F = TypeVar("F", Fit, MeasurementFit)
 
 
 @dataclass(frozen=True, slots=True)
 class Observed(Drawn, Tabled, Generic[D, F]):
-    """What participants answered or what was measured, how it fits the prediction, and what it makes of the prediction.
+    """Answers or measurements of participants, their fit to the prediction, and the prediction after them.
 
     Attributes
     ----------
@@ -74,7 +74,7 @@ class Observed(Drawn, Tabled, Generic[D, F]):
 
     @property
     def provenance(self) -> tuple[str, ...]:
-        """What the conditioned draws were made from, a line each."""
+        """The origin of the conditioned draws, one line each."""
         found = self.conditioned
         how = "weights" if not found.rounds else f"{found.rounds} rounds of fresh laboratories"
         return (
@@ -213,7 +213,7 @@ def observed(
     before, kept = prior.first(number, seed), max(number // 2, 2)
     step = step_counter(progress, (1 + len(others)) * (number + kept))
     main = stage(icons, rig, prior, seed=seed, tracking=crowd.tracking)
-    data: Any = Answered(trials, main) if isinstance(trials, Trials) else MeasuredValues(trials, prior, Setting.of(rig))
+    data: Any = Namings(trials, main) if isinstance(trials, Trials) else MeasuredValues(trials, prior, Setting.of(rig))
     found: Conditioned = condition(data, before, seed=seed, kept=kept, step=step)
 
     def both(played: Stage) -> tuple[Confusions, Confusions]:

@@ -81,14 +81,14 @@ class Stage:
         return self.played.people
 
     def confusions(self, some: Laboratories, step: Callable[[], None] | None = None) -> Confusions:
-        """How the people of each laboratory name the icons; `step` is called after each."""
+        """Confusions of the icons by the people of each laboratory; `step` is called after each."""
         values, prior = self.prior.values(some), self.prior
 
         def one(k: int) -> Small:
             observer, people = prior.observer_and_people(values[k], int(some.seed[k]), self.people)
             people = replace(people, contact_resistance=self.skins[0], outer_layer=self.skins[1])
             felt = respond(self.played, people, observer, detection=False)
-            named = identify(felt, prior.norm, people, observer, int(some.seed[k]), SAMPLES)[1].probability
+            named = identify(felt, prior.form, people, observer, int(some.seed[k]), SAMPLES)[1].probability
             return np.maximum(named, LEAST_PROBABILITY).astype(np.float32)
 
         found = np.empty((len(some), self.people, len(self.icons), len(self.icons)), dtype=np.float32)

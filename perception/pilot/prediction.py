@@ -119,7 +119,7 @@ def _change(name: str, unit: str, before: Array, after: Array) -> ChangedConstan
 
 @dataclass(frozen=True, slots=True)
 class PairFit:
-    """How often two icons were taken for each other, as a share of their `trials`; `missed`: outside the interval."""
+    """Confusions of two icons as a share of their `trials`; `missed`: outside the interval."""
 
     a: str
     b: str
@@ -132,7 +132,7 @@ class PairFit:
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """What the same experiment would have given: `p` of the test of fit, scores as reported, and every pair.
+    """The prediction for the same experiment: `p` of the test of fit, scores as reported, and every pair.
 
     `p_people` is the share whose participants differ as much as the observed ones (None for fewer than three).
     """

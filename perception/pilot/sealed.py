@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 WHAT, MOST_MB = "sealed prediction", 200
 LEAST = 1e-6
-"""Probability that counts in place of 0, so that no single answer decides for ever."""
+"""Probability that counts in place of 0, so that no single answer decides alone."""
 
 
 class SealedError(InputError):
@@ -37,7 +37,7 @@ class SealedError(InputError):
 
 
 @dataclass(frozen=True, slots=True)
-class Sealed:
+class SealedPrediction:
     """A prediction as it was sealed: file, its SHA-256, version of the program, names, confusions (icons, icons)."""
 
     source: str
@@ -48,10 +48,10 @@ class Sealed:
 
 
 @dataclass(frozen=True, slots=True)
-class Opened:
+class SealedScores:
     """Bits a trial and share correct of each score; `chance_bits` is the SD of the prediction's, were it the truth."""
 
-    sealed: Sealed
+    sealed: SealedPrediction
     trials: int
     observed_correct: float
     scores: dict[str, tuple[float, float]]
@@ -62,7 +62,7 @@ class Opened:
         return json.dumps(asdict(self), default=np.ndarray.tolist, ensure_ascii=False, indent=1)
 
 
-def read_sealed(path: str | Path, icons: IconSet, rig: Rig) -> Sealed:
+def read_sealed(path: str | Path, icons: IconSet, rig: Rig) -> SealedPrediction:
     """Read the JSON of a ranking of these icons on this rig; a `SealedError` says what does not fit."""
     data, again = read_bytes(Path(path), WHAT, MOST_MB, SealedError), "give the JSON of a ranking, as it was written"
     try:
@@ -84,10 +84,10 @@ def read_sealed(path: str | Path, icons: IconSet, rig: Rig) -> Sealed:
             raise SealedError(f"{path}: sealed for other {name}; give {cure}, or open it with thermicon {version}")
     if confusion.shape != (len(labels),) * 2 or not (confusion >= 0).all() or (abs(confusion.sum(1) - 1) > 1e-6).any():
         raise SealedError(f"{path}: confusion.probability has no row of probabilities for each icon; {again}")
-    return Sealed(Path(path).name, hashlib.sha256(data).hexdigest(), version, labels, confusion)
+    return SealedPrediction(Path(path).name, hashlib.sha256(data).hexdigest(), version, labels, confusion)
 
 
-def opened(sealed: Sealed, trials: Trials, icons: IconSet, rig: Rig) -> Opened:
+def opened(sealed: SealedPrediction, trials: Trials, icons: IconSet, rig: Rig) -> SealedScores:
     """Score a sealed prediction on answers to its icons; trials without an answer are left out."""
     counts, own = trials.pooled, sealed.confusion
     number, shown, logs = float(counts.sum()), counts.sum(axis=1), np.log2(own.clip(LEAST))
@@ -103,6 +103,6 @@ def opened(sealed: Sealed, trials: Trials, icons: IconSet, rig: Rig) -> Opened:
         "skin temperature alone": score(skin_alone(list(icons), rig)),
         "best that its matrix allows": score(own, shown[:, None] * own),
     }
-    return Opened(
+    return SealedScores(
         sealed, int(number), float(counts.trace() / number), scores, math.sqrt(float(shown @ spread)) / number
     )

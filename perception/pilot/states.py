@@ -17,7 +17,7 @@ from thermicon.circuit.records import RecordTable
 
 from ..arrays import Array
 from ..identification.laboratory_draws import Uncertain, latin, memory_parameters
-from ..observer.channels import CHANNELS, Norm
+from ..observer.channels import CHANNELS, MemoryForm
 from ..observer.constants import BETWEEN_LABORATORIES
 from ..observer.draws import PosteriorDraws
 from ..observer.observer import Observer
@@ -50,15 +50,15 @@ class Laboratories:
 
 
 class LaboratoryPrior:
-    """What laboratories are drawn from: draws of the posterior, intervals of memory, and the spread of offsets.
+    """The prior of laboratories: draws of the posterior, intervals of memory, and the spread of offsets.
 
     Memory that the draws have themselves is kept with their constants, on the scale of its shipped interval.
     """
 
-    def __init__(self, draws: PosteriorDraws, norm: Norm, records: RecordTable | None = None) -> None:
-        self.draws, self.norm = draws, norm
-        own = [each for each in memory_parameters(norm) if each.name in draws.memory_names]
-        free = [each for each in memory_parameters(norm, records=records) if each.name not in draws.memory_names]
+    def __init__(self, draws: PosteriorDraws, form: MemoryForm, records: RecordTable | None = None) -> None:
+        self.draws, self.form = draws, form
+        own = [each for each in memory_parameters(form) if each.name in draws.memory_names]
+        free = [each for each in memory_parameters(form, records=records) if each.name not in draws.memory_names]
         self.memory = (*own, *free)
         known = {prior.name: prior for prior in priors_of(draws.variable).each}
         self._scales: tuple[Prior, ...] = tuple(known[name] for name in draws.names)
@@ -76,14 +76,14 @@ class LaboratoryPrior:
         self._whitened = off @ ((vectors * turned) @ vectors.T)
 
     @classmethod
-    def of(cls, observer: ObserverModel | Path | str | None, norm: Norm) -> LaboratoryPrior:
+    def of(cls, observer: ObserverModel | Path | str | None, form: MemoryForm) -> LaboratoryPrior:
         """From a model, a file of draws, or the shipped draws; a ValueError for an observer without draws."""
         model = ObserverModel.of(observer)
         if model.posterior is None:
             raise ValueError(
                 f"{model.name} has no posterior draws, from which laboratories are made: give a table of draws (.csv)"
             )
-        return cls(model.posterior, norm, model.records)
+        return cls(model.posterior, form, model.records)
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -68,7 +68,7 @@ class Trials:
 
     @property
     def presented(self) -> Array:
-        """How often each participant was presented each icon (participants, icons)."""
+        """Number of presentations to each participant of each icon (participants, icons)."""
         found: Array = self.counts.sum(axis=2) + self.unanswered
         return found
 

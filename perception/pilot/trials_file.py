@@ -45,7 +45,7 @@ def read_trials(
     """Read the answers of an identification experiment to icons of a set, whose names are all answers that there are.
 
     A CSV file has the columns participant, trial, presented and responded, where trials are numbered anew in each block
-    also block; or one row a participant with icon_1, answer_1 and so on; or a matrix of counts, a row for each icon
+    also block; or one row per participant with icon_1, answer_1 and so on; or a matrix of counts, a row for each icon
     presented and a column for each answer, which is one group. Other columns are left alone, semicolons and tabs also
     separate them, and lines that begin with # are comments. Where nobody answered, the cell is empty or one of
     `NOTHING`. Participants are in the order of the file.
@@ -126,11 +126,11 @@ def read_trials(
 
 
 def _asked(path: Path, table: Table) -> Iterator[tuple[int, list[str]]]:
-    """Line, and participant, block, trial, icon and answer of each trial, from a row a trial or a row a participant."""
+    """Line, and participant, block, trial, icon and answer of each trial, from one row per trial or per participant."""
     found = {(m[1] or m[3], m[2].lower() in ASKED): m[0] for m in map(WIDE.fullmatch, table.header) if m}
     numbers = dict.fromkeys(number for number, asked in found if number and asked and "presented" not in table.header)
     if not numbers:
-        require(path, table, COLUMNS, f"{EXAMPLE}, or, one row a participant, {WIDE_EXAMPLE}")
+        require(path, table, COLUMNS, f"{EXAMPLE}, or, with one row per participant, {WIDE_EXAMPLE}")
         for line, row in table.records((*COLUMNS, "block")):
             yield line, [row["participant"], row.get("block", ""), *(row[column] for column in COLUMNS[1:])]
         return

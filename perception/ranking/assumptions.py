@@ -230,7 +230,7 @@ def _of_people(fitted: PeopleFit, rig: Rig, observer: Observer) -> list[Assumpti
 
 
 def _of_draws(draws: LaboratoryDraws) -> list[Assumption]:
-    """What constants do between the ends of their 95 %, as parabolas in their normal scores."""
+    """Effects of constants between the ends of their 95 %, as parabolas in their normal scores."""
     count = len(draws)
     predicted = draws.proportion_correct
     if count < FEWEST_DRAWS or np.ptp(predicted) == 0.0:

@@ -29,7 +29,7 @@ from ..identification.population import (
 )
 from ..identification.task import USUAL, Task
 from ..kernels.parallel import in_order
-from ..observer.observer import NORMS, Norm, Observer
+from ..observer.observer import MEMORY_FORMS, MemoryForm, Observer
 from ..observer.observer_model import Crowd, ObserverModel, Tracking
 from ..observer.people import People
 from ..sensation.detection import Detection, report_step
@@ -55,7 +55,7 @@ class BatchResult:
     `detected` (p, m), `cold_share` (p, m) of the reports and `confusion` (p, m, m) are probabilities, `reported`
     (1, m, n) is the number of people who have reported by each time, `d_prime` (p, q) from memory, `correct` (p, m)
     0–1, `bits`, `plugin` (p,) information and what experiments report of it, `other_correct` (p, m) by the
-    other norm.
+    other form of memory.
     """
 
     detected: Array
@@ -77,7 +77,7 @@ class BatchResult:
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """Icons on a rig, simulated to one common end (s), for people drawn from a seed, by a norm.
+    """Icons on a rig, simulated to one common end (s), for people drawn from a seed, with a form of memory.
 
     `observer` is another than the shipped one. Its draws of the posterior do not travel with the job.
     """
@@ -89,7 +89,7 @@ class Job:
     seed: int
     trials: int
     tracking: Tracking | None
-    norm: Norm
+    memory: MemoryForm
     task: Task = USUAL
     observer: ObserverModel | None = None
 
@@ -119,9 +119,9 @@ class Job:
         return number * self.at_once, min(self.people, (number + 1) * self.at_once)
 
     @property
-    def other_norm(self) -> Norm:
-        """The norm that is compared with the chosen one."""
-        return next(norm for norm in NORMS if norm != self.norm)
+    def other_memory(self) -> MemoryForm:
+        """The form of memory that is compared with the chosen one."""
+        return next(memory for memory in MEMORY_FORMS if memory != self.memory)
 
 
 def _respond(job: Job, number: int) -> tuple[People, Observer, PopulationResponse]:
@@ -136,10 +136,10 @@ def run(job: Job, number: int) -> BatchResult:
     """Compute one batch."""
     start, _ = job.span(number)
     crowd, observer, felt = _respond(job, number)
-    d_prime, confusion = identify(felt, job.norm, crowd, observer, job.seed, SAMPLES, start, job.task)
-    # Fewer trials than of the norm that counts, the fewer the more templates naming goes through.
-    fewer = OTHER_SAMPLES if job.other_norm != "naming" else max(4, OTHER_NAMED // len(job.icons) ** 2)
-    _, other = identify(felt, job.other_norm, crowd, observer, job.seed, fewer, start, job.task)
+    d_prime, confusion = identify(felt, job.memory, crowd, observer, job.seed, SAMPLES, start, job.task)
+    # Fewer trials than of the form that counts, the fewer the more templates naming goes through.
+    fewer = OTHER_SAMPLES if job.other_memory != "naming" else max(4, OTHER_NAMED // len(job.icons) ** 2)
+    _, other = identify(felt, job.other_memory, crowd, observer, job.seed, fewer, start, job.task)
     named = confusion.probability
     first, second = np.triu_indices(len(job.icons), 1)
     return BatchResult(
@@ -157,7 +157,7 @@ def run(job: Job, number: int) -> BatchResult:
 
 @dataclass(frozen=True, slots=True)
 class FeltResult:
-    """What people feel of m icons: `detection` (m,) by one drawn at random, `pairs` (people, m(m − 1)/2) of d′."""
+    """Percepts of m icons: `detection` (m,) by one person drawn at random, `pairs` (people, m(m − 1)/2) of d′."""
 
     detection: Detection
     pairs: Array
@@ -192,7 +192,7 @@ class PooledResult(FeltResult):
     """Responses of all people to m icons.
 
     `pooled` (m, m); `each_correct` (people, m); `bits`, `plugin` (people,); `other_correct` (m,) proportion correct of
-    each icon by the other norm. `standard_error` and `person_standard_error` are the largest sampling errors of a cell,
+    each icon by the other form. `standard_error` and `person_standard_error` are the largest sampling errors of a cell,
     pooled and of one person.
     """
 
@@ -214,7 +214,7 @@ class PooledResult(FeltResult):
 
 
 def felt_by_people(job: Job, first: int, step: Callable[[], None]) -> Iterator[FeltResult]:
-    """What about as many people as `first` feel, where they are fewer batches than all, and then what all feel.
+    """Percepts of about as many people as `first`, where they are fewer batches than all, and then of all.
 
     Icons are not named, which takes most of the time of many icons; `step` is called after each batch.
     """
@@ -222,7 +222,7 @@ def felt_by_people(job: Job, first: int, step: Callable[[], None]) -> Iterator[F
 
     def felt_in(number: int) -> tuple[Array, ...]:
         crowd, observer, felt = _respond(job, number)
-        d_prime, found = memory_dprime(felt, job.norm, crowd.memory, observer, job.task), felt.detected
+        d_prime, found = memory_dprime(felt, job.memory, crowd.memory, observer, job.task), felt.detected
         return found.probability, found.cold_share, d_prime[:, one, other], found.reported_sum()[0]
 
     held: list[tuple[Array, ...]] = []
@@ -279,7 +279,7 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
 
 def _sampling_error(job: Job, confusion: Array, people: int = 1) -> float:
     """Largest standard error of a cell to which so many people give answers; 0 where cells are exact."""
-    direct = job.norm == "naming"
+    direct = job.memory == "naming"
     if len(job.icons) <= (1 if direct else 2):
         return 0.0
     return sampling_error(confusion, people * (NAMED_SAMPLES if direct else SAMPLES))

@@ -141,7 +141,7 @@ def with_intervals(ranking: Ranking, draws: int, step: Callable[[], None] | None
     whole = Nominal(*scores, felt.detected, felt.middle, onsets, confused)
     crowd = model.people(job.people, job.seed)
     found = new_laboratory(
-        job.icons, job.rig, job.end_s, crowd, whole, job.norm,
+        job.icons, job.rig, job.end_s, crowd, whole, job.memory,
         tracking=job.tracking, model=model, draws=draws, seed=job.seed, task=job.task, step=step,
     )  # fmt: skip
     return replace(ranking, new_laboratory=found)

@@ -82,7 +82,7 @@ def ranking_file(ranking: Ranking) -> dict[str, Any]:
 
 
 def as_text(made: dict[str, Any]) -> str:
-    """JSON text of plain data: a key a line, and a thing a line where a key holds a list of things."""
+    """JSON text of plain data: one key per line, and one entry per line where a key holds a list of objects."""
     lines = []
     for key, value in made.items():
         if isinstance(value, list) and any(isinstance(thing, dict) for thing in value):
@@ -131,8 +131,8 @@ def _set(ranking: Ranking, asked: NewLaboratory | None) -> dict[str, Any]:
         "total_J": ranking.total_J,
         "worst_pair": None if ranking.worst_pair is None else list(ranking.worst_pair),
         "rules_disagree": list(ranking.rules_disagree),
-        "norm_sensitivity": ranking.norm_sensitivity,
-        "norm_changes": ranking.norm_changes,
+        "norm_sensitivity": ranking.memory_sensitivity,
+        "norm_changes": ranking.memory_changes,
         "proportion_correct_interval_new_laboratory": asked.proportion_correct if asked else None,
         "information_bits_interval_new_laboratory": asked.information_bits if asked and many else None,
         "posterior_draws": asked.draws if asked else None,
@@ -152,7 +152,7 @@ def _icon(icon: IconScore) -> dict[str, Any]:
 
 
 def _map(ranking: Ranking) -> dict[str, Any]:
-    """The perceptual map: a point an icon, in d′, and where it lies for single people as a covariance in d′²."""
+    """The perceptual map: one point per icon, in d′, and where it lies for single people as a covariance in d′²."""
     from ..identification.map import map_of
 
     found = map_of(ranking)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ..identification.carry_over import CarryOver
     from ..identification.map import PerceptualMap
     from ..identification.task import Task
-    from ..observer.observer import Norm
+    from ..observer.observer import MemoryForm
     from .batches import Job, PooledResult
 
 
@@ -111,21 +111,21 @@ class Ranking(Drawn, Tabled):
 
     @property
     def tracking(self) -> str:
-        """What every person gets: `replay`, `display` or `ideal`."""
+        """What every virtual person receives: `replay`, `display` or `ideal`."""
         from thermicon.circuit.solver.batch import usual_tracking
 
         return self.job.tracking or ", ".join(sorted({usual_tracking(icon) for icon in self.job.icons}))
 
     @property
-    def memory(self) -> Norm:
-        """How icons are remembered."""
-        return self.job.norm
+    def memory(self) -> MemoryForm:
+        """Form of memory: `episodes` or `naming`."""
+        return self.job.memory
 
     @property
     def crowd(self) -> Crowd:
-        """Who feels and remembers the icons."""
+        """The people who feel and remember the icons."""
         job = self.job
-        return Crowd(job.people, job.seed, job.tracking, job.norm, self.model)
+        return Crowd(job.people, job.seed, job.tracking, job.memory, self.model)
 
     @property
     def task(self) -> Task:
@@ -179,7 +179,7 @@ class Ranking(Drawn, Tabled):
 
     @property
     def assumptions(self) -> Assumptions:
-        """What the result depends on most, where people and draws show it."""
+        """The most influential assumptions, where people and draws show them."""
         crowd, elsewhere = self.model.people(self.people, self.seed), self.new_laboratory
         each = None if elsewhere is None else elsewhere.each
         return assumptions_of(self.felt.correct, crowd, self.job.rig, self.model.nominal, each)
@@ -220,13 +220,13 @@ class Ranking(Drawn, Tabled):
         return self.felt.middle
 
     @property
-    def norm_sensitivity(self) -> dict[str, float]:
-        """Proportion correct of the set by the other norm, under its name."""
-        return {self.job.other_norm: float(self.felt.other_correct.mean())}
+    def memory_sensitivity(self) -> dict[str, float]:
+        """Proportion correct of the set by the other form of memory, under its name."""
+        return {self.job.other_memory: float(self.felt.other_correct.mean())}
 
     @property
-    def norm_changes(self) -> dict[str, tuple[tuple[str, str], ...]]:
-        """By the other norm, the pairs of icons whose order changes: the first is better here, the second there.
+    def memory_changes(self) -> dict[str, tuple[tuple[str, str], ...]]:
+        """Pairs of icons in another order with the other form of memory: the first is better here, the second there.
 
         Differences must exceed one percentage point in both, since smaller ones are within the sampling error.
         """
@@ -236,7 +236,7 @@ class Ranking(Drawn, Tabled):
             for i, j in permutations(range(len(own)), 2)
             if own[i] > own[j] + PERCENTAGE_POINT and other[j] > other[i] + PERCENTAGE_POINT
         )
-        return {self.job.other_norm: changed}
+        return {self.job.other_memory: changed}
 
     @property
     def rules_score(self) -> float | None:
@@ -245,7 +245,7 @@ class Ranking(Drawn, Tabled):
 
     @property
     def rules_disagree(self) -> tuple[dict[str, Any], ...]:
-        """Where rules and model judge differently."""
+        """Disagreements of rules and model."""
         return disagreements(self.icons, self.pairs)
 
     def rows(self) -> list[dict[str, Any]]:

@@ -20,7 +20,7 @@ from thermicon.icons.number_text import decimals, fixed, verdict
 
 from ..arrays import Array
 from ..identification.episodes import PARTS, Episode, Episodes, distance_shares
-from ..observer.channels import CHANNELS, Channel, Norm
+from ..observer.channels import CHANNELS, Channel, MemoryForm
 from ..observer.observer import Observer
 from ..sensation.features import (
     STILL_K,
@@ -117,19 +117,19 @@ def pair_reasons(
     b: Trace,
     felt: tuple[Percept, Percept],
     observer: Observer,
-    norm: Norm,
+    memory: MemoryForm,
     episodes: Episodes,
     places: tuple[int, int],
 ) -> tuple[str, ...]:
-    """What separates the two icons, or fails to: what carries the distance, then direction, peaks, rates, onsets.
+    """Reasons for the distance of two icons: what carries it, then direction, peaks, rates, onsets.
 
-    Of two icons that move the receptors alike there is one sentence, which says so. `norm` is the norm with which the
+    Of two icons that move the receptors alike there is one sentence, which says so. `memory` is the form with which the
     two are distinguished from memory; `episodes` are those of the nominal person, with the two icons at `places`.
     """
     if _alike(a, b):
         both = f"{_name(a)} and {_name(b)}"
         return (f"nothing differs: {both} move the receptors in the same way, so their names are guessed",)
-    found = [_carries((_name(a), _name(b)), episodes, places, observer, norm), _direction(a, b)]
+    found = [_carries((_name(a), _name(b)), episodes, places, observer, memory), _direction(a, b)]
     for channel in directions(a):
         if channel in directions(b):
             found += [_peaks(a, b, channel), _rates(a, b, channel)]
@@ -137,10 +137,10 @@ def pair_reasons(
 
 
 def _carries(
-    names: tuple[str, str], episodes: Episodes, places: tuple[int, int], observer: Observer, norm: Norm
+    names: tuple[str, str], episodes: Episodes, places: tuple[int, int], observer: Observer, memory: MemoryForm
 ) -> str:
-    """What distinguishes two of the first person's icons from memory: the feature that carries most of it."""
-    shares = distance_shares(episodes, places[0], episodes, places[1], observer, norm)
+    """The feature that carries most of the first person's distance between two icons."""
+    shares = distance_shares(episodes, places[0], episodes, places[1], observer, memory)
     total = math.sqrt(sum(shares.values()))
     one, other = (episodes.listed(0, place) for place in places)
     if not one and not other:

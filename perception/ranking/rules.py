@@ -156,7 +156,7 @@ def rig_rules(rig: Rig) -> tuple[RuleResult, ...]:
 
 
 def first_passing(trace: Trace) -> tuple[float, Channel] | None:
-    """When (s) a receptor first passes the threshold of its rule, and which; None where neither does."""
+    """The time (s) when a receptor first passes its rule's threshold, and which; None where neither does."""
     table = load_rules()
     times = [(passing_s(trace, c, table.one("change at the receptor", channel=c).central), c) for c in CHANNELS]
     found = sorted((time, channel) for time, channel in times if time is not None)

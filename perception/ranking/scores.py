@@ -18,7 +18,7 @@ from thermicon.icons.number_text import decimals, significant
 
 from ..criteria import DISTINGUISHABLE_DPRIME, FELT_FROM
 from ..identification.episodes import Episodes, remembered
-from ..observer.observer import Channel, Norm, Observer
+from ..observer.observer import Channel, MemoryForm, Observer
 from ..sensation.coverage import outside_data
 from ..sensation.detection import channel_name
 from ..sensation.features import attack_K_per_s, delay_s, peak_change_K
@@ -95,14 +95,14 @@ class IconScore:
 
 
 @dataclass(frozen=True, slots=True)
-class Compared:
-    """What reasons and rules of pairs are read off: the icons on the nominal rig, as a nominal person feels them."""
+class PairInputs:
+    """The input of reasons and rules of pairs: icons on the nominal rig, as a nominal person feels them."""
 
     traces: Sequence[Trace]
     percepts: Sequence[Percept]
     episodes: Episodes
     observer: Observer
-    norm: Norm
+    memory: MemoryForm
 
 
 @dataclass(frozen=True)
@@ -120,14 +120,14 @@ class PairScore:
     d_prime: float
     confused_probability: float
     places: tuple[int, int] = field(repr=False)
-    compared: Compared = field(repr=False, compare=False)
+    compared: PairInputs = field(repr=False, compare=False)
 
     @cached_property
     def why(self) -> tuple[str, ...]:
-        """What separates the two, or fails to, in sentences."""
-        held, (i, j) = self.compared, self.places
-        felt = held.percepts[i], held.percepts[j]
-        return pair_reasons(held.traces[i], held.traces[j], felt, held.observer, held.norm, held.episodes, self.places)
+        """Reasons for the distance of the two, in sentences."""
+        of, (i, j) = self.compared, self.places
+        felt = of.percepts[i], of.percepts[j]
+        return pair_reasons(of.traces[i], of.traces[j], felt, of.observer, of.memory, of.episodes, self.places)
 
     @cached_property
     def rules(self) -> tuple[RuleResult, ...]:
@@ -214,13 +214,13 @@ def assemble(
     durations_s: Sequence[float],
     percepts: Sequence[Percept],
     all_: PooledResult,
-    norm: Norm,
+    memory: MemoryForm,
     observer: Observer,
 ) -> tuple[tuple[IconScore, ...], tuple[PairScore, ...]]:
     """Scores of all icons and of all pairs, in file order."""
     middle, pooled, detected = all_.middle, all_.pooled, all_.detected
     onsets, channels = all_.detection.onset_s, all_.detection.channel
-    compared = Compared(traces, percepts, remembered(percepts, observer), observer, norm)
+    compared = PairInputs(traces, percepts, remembered(percepts, observer), observer, memory)
     pairs = [
         PairScore(
             a=icons[i].name,

@@ -55,13 +55,13 @@ NOTEWORTHY = 0.02
 
 
 def load_measurements() -> Mapping[str, tuple[str, ...]]:
-    """What a laboratory can measure, and the constants, by name, that each measurement would determine."""
+    """Possible measurements of a laboratory, with the constants, by name, that each would determine."""
     rows = tomllib.loads((DATA / "measurements.toml").read_text("utf-8"))["measurement"]
     return {row["text"]: tuple(row["constants"]) for row in rows}
 
 
 def base_name(constant: str) -> str:
-    """A constant without the norm that its value belongs to.
+    """A constant without the form of memory that its value belongs to.
 
     >>> base_name("memory noise (episodes)")
     'memory noise'

@@ -24,7 +24,7 @@ from ..identification.population import (
     run_end_s,
 )
 from ..identification.task import USUAL, Task
-from ..observer.channels import USUAL_NORM
+from ..observer.channels import USUAL_MEMORY
 from ..observer.observer import Observer
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..observer.people import People
@@ -52,7 +52,7 @@ class Appraisal:
     reached: float
 
     def value(self, objective: Objective) -> float:
-        """The number that an objective goes by."""
+        """The number by which an objective judges a set."""
         return {
             "worst": self.d_prime,
             "correct": self.proportion_correct,
@@ -115,7 +115,7 @@ def population_dprime(icons: Sequence[Icon], rig: Rig, crowd: People) -> tuple[A
     """Pairwise d′ (people, icons, icons) from memory, by the shipped observer, and durations (s) of the icons."""
     nominal = Observer.load()
     felt, durations = population_response(icons, rig, crowd, observer=nominal)
-    return memory_dprime(felt, USUAL_NORM, crowd.memory, nominal, USUAL), durations
+    return memory_dprime(felt, USUAL_MEMORY, crowd.memory, nominal, USUAL), durations
 
 
 def population_response(
@@ -128,7 +128,7 @@ def population_response(
     end_s: float | None = None,
     observer: Observer,
 ) -> tuple[PopulationResponse, Array]:
-    """What every person feels of every icon, and durations (s) of the icons."""
+    """Every person's response to every icon, and durations (s) of the icons."""
     from thermicon.circuit.solver.simulate import duration_s
 
     durations = np.array([duration_s(icon, rig) for icon in icons])

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..identification.population import run_end_s
-from ..observer.observer import Norm, Observer
+from ..observer.observer import MemoryForm, Observer
 from ..ranking.scores import objection
 from .pool import POOL_HZ, Pool
 
@@ -142,13 +142,13 @@ class Screening:
     now: Array
     pair: tuple[int, int]
     wanted: float
-    norm: Norm
+    memory: MemoryForm
     observer: Observer
 
 
 @dataclass(slots=True)
-class Vain:
-    """What was tried in vain: the largest d′ of a playable icon that is too small, and whether others were harmed."""
+class Rejections:
+    """Results of rejected edits: the largest d′ of a playable one, and whether any edit made another pair worse."""
 
     closest: float = 0.0
     opposed: bool = False
@@ -159,7 +159,7 @@ def worse(before: Array, after: Array, wanted: float) -> NDArray[np.bool_]:
     return (after < before - TOLERANCE) & (after < FAR * wanted)
 
 
-def offers(of: Screening, target: float, largest: float, vain: Vain) -> list[CandidateEdit]:
+def offers(of: Screening, target: float, largest: float, rejected: Rejections) -> list[CandidateEdit]:
     """Edits that bring the pair to a target d′ for the nominal person, the cheapest first."""
     from thermicon.circuit.solver.inverse import baseline_C
     from thermicon.icons.model.icon import all_played
@@ -176,7 +176,7 @@ def offers(of: Screening, target: float, largest: float, vain: Vain) -> list[Can
     ]
     logs = np.log(largest) * np.linspace(0.0, 1.0, GRID + 1)[1:] ** 2
     tried = [one for w, way in enumerate(ways) for g, log in enumerate(logs) for one in _changed(of, way, w, g, log)]
-    good = _good(of, [*tried, *(one for place in free for one in _repeats(of, place))], target, vain)
+    good = _good(of, [*tried, *(one for place in free for one in _repeats(of, place))], target, rejected)
     found = [one for one in good if one.way is None]
     first: dict[int, int] = {}
     for one in good:
@@ -189,12 +189,12 @@ def offers(of: Screening, target: float, largest: float, vain: Vain) -> list[Can
     for _ in range(ROUNDS):
         middle = {w: 0.5 * (low + high) for w, (low, high) in spans.items()}
         trial = [one for w, log in middle.items() for one in _changed(of, ways[w], w, 0, log)]
-        done = {one.way for one in _good(of, trial, target, vain)}
+        done = {one.way for one in _good(of, trial, target, rejected)}
         spans = {w: (low, middle[w]) if w in done else (middle[w], high) for w, (low, high) in spans.items()}
     last = [one for w, (_, high) in spans.items() for d in (2, 3) for one in _changed(of, ways[w], w, d, high, d)]
     # Of each number the edit with the fewest digits; those come first.
     shortest: dict[int | None, CandidateEdit] = {}
-    for one in _good(of, last, target, vain):
+    for one in _good(of, last, target, rejected):
         shortest.setdefault(one.way, one)
     best = {(one.place, one.new): one for one in sorted([*found, *shortest.values()], key=lambda one: -one.cost)}
     return sorted(best.values(), key=lambda one: (one.cost, one.place, one.new))
@@ -246,7 +246,7 @@ def _valid(
     return [CandidateEdit(place, new, old, line, cost, added, way, step, np.empty(0))]
 
 
-def _good(of: Screening, tried: Sequence[CandidateEdit], target: float, vain: Vain) -> list[CandidateEdit]:
+def _good(of: Screening, tried: Sequence[CandidateEdit], target: float, rejected: Rejections) -> list[CandidateEdit]:
     """Those that part the pair for the nominal person, are safe and reached, and leave the others apart."""
     if not tried:
         return []
@@ -254,18 +254,18 @@ def _good(of: Screening, tried: Sequence[CandidateEdit], target: float, vain: Va
     end_s = max(of.kept.end_s, run_end_s([longest], POOL_HZ))
     felt = Pool.of([one.icon for one in tried], of.kept.rig, of.observer, end_s=end_s)
     good = []
-    for trace, one, row in zip(felt.traces, tried, felt.dprimes(of.kept, of.norm, of.observer), strict=True):
+    for trace, one, row in zip(felt.traces, tried, felt.dprimes(of.kept, of.memory, of.observer), strict=True):
         other = of.pair[1] if one.place == of.pair[0] else of.pair[0]
         fallen = worse(of.now[one.place], row, of.wanted)
         fallen[[one.place, other]] = False
         parted = bool(row[other] >= target)
         # Judged only where it matters, since it takes long.
-        if not (parted or row[other] > vain.closest) or objection(trace) is not None:
+        if not (parted or row[other] > rejected.closest) or objection(trace) is not None:
             continue
         if not parted:
-            vain.closest = max(vain.closest, float(row[other]))
+            rejected.closest = max(rejected.closest, float(row[other]))
         elif fallen.any():
-            vain.opposed = True
+            rejected.opposed = True
         else:
             good.append(replace(one, apart=row))
     return good

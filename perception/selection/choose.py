@@ -170,7 +170,7 @@ class Chooser:
     def feel(self, felt: FeltResult) -> None:
         """Choose from now on by what some people feel, the first of the job or all of them."""
         self.felt, self.middle, people = felt, felt.middle, len(felt.pairs)
-        self.crowd = Crowd(people, self.job.seed, self.job.tracking, self.job.norm, self.model)
+        self.crowd = Crowd(people, self.job.seed, self.job.tracking, self.job.memory, self.model)
         self.people = self.model.people(people, self.job.seed)
         self.namings = None
         if self.asked.objective != "worst":
@@ -199,7 +199,7 @@ class Chooser:
             onset_s = felt.detection.onset_s[chosen]
             alone = Nominal(own.proportion_correct, own.information_bits, felt.detected[chosen], middle, onset_s)
             found = new_laboratory(
-                icons, job.rig, job.end_s, self.people, alone, job.norm,
+                icons, job.rig, job.end_s, self.people, alone, job.memory,
                 tracking=job.tracking, model=self.model, draws=draws, seed=job.seed, task=task, step=step,
             )  # fmt: skip
         return Choice(

@@ -24,7 +24,7 @@ from ..identification.population import memory_dprime, run_end_s
 from ..identification.task import USUAL, Task
 from ..observer.people import People
 from .appraise import appraise, population_response
-from .candidate_edits import CandidateEdit, Screening, Vain, offers, worse
+from .candidate_edits import CandidateEdit, Rejections, Screening, offers, worse
 from .pool import POOL_HZ, Pool
 
 if TYPE_CHECKING:
@@ -142,15 +142,15 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
 
     (i, j), job, before, nominal = pair, ranking.job, ranking.d_prime, ranking.model.nominal
     kept = Pool.of(job.icons, job.rig, nominal)
-    now = kept.dprimes(kept, job.norm, nominal)
-    screening, vain = Screening(kept, now, pair, wanted, job.norm, nominal), Vain()
+    now = kept.dprimes(kept, job.memory, nominal)
+    screening, rejected = Screening(kept, now, pair, wanted, job.memory, nominal), Rejections()
     crowd = ranking.model.people(job.people, job.seed)
     target = wanted * now[i, j] / before[i, j] if now[i, j] > 0 and before[i, j] > 0 else wanted
     largest, confirmed = LARGEST, 0.0
     refused: set[tuple[int, str]] = set()
 
     def untried() -> list[CandidateEdit]:
-        return [one for one in offers(screening, target, largest, vain) if (one.place, one.new) not in refused]
+        return [one for one in offers(screening, target, largest, rejected) if (one.place, one.new) not in refused]
 
     for _ in range(MOST_CONFIRMED):
         offered = untried()
@@ -170,16 +170,16 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
                 )
             recounted = _recounted(ranking, one, crowd, end_s)
             return Edit(one.icon.name, one.old, one.new, one.cost, one.added_s, parted, one.icon, recounted)
-        vain.opposed |= harmed
+        rejected.opposed |= harmed
         refused.add((one.place, one.new))
         if parted < wanted:
             confirmed = max(confirmed, parted)
             target *= 1.002 * min(wanted / max(parted, 1e-6), 1.5)
-    if vain.opposed:
+    if rejected.opposed:
         reason = "each one that separates them makes another pair worse"
     else:
         # A nominal person short of the target is people short of what is wanted: rounding up would say otherwise.
-        reached = math.floor(10.0 * max(confirmed, vain.closest * wanted / target)) / 10.0
+        reached = math.floor(10.0 * max(confirmed, rejected.closest * wanted / target)) / 10.0
         most = f"with numbers up to {largest:g} times larger or smaller"
         reason = f"the largest d′ of a safe and reachable one, {most}, is about {reached:.1f}"
     return NoEdit(f"no single edit separates them to d′ {wanted:.3g}: {reason}")
@@ -193,7 +193,7 @@ def _with_people(
 
     def medians(icons: Sequence[Icon], task: Task) -> Array:
         felt, _ = population_response(icons, job.rig, crowd, job.tracking, end_s=end_s, observer=nominal)
-        return np.asarray(np.median(memory_dprime(felt, job.norm, crowd.memory, nominal, task), axis=0))
+        return np.asarray(np.median(memory_dprime(felt, job.memory, crowd.memory, nominal, task), axis=0))
 
     i, j = screening.pair
     if job.task.gap_s is None:

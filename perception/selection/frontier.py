@@ -68,7 +68,7 @@ class Frontier(Drawn, Tabled):
     def ranking(self) -> Ranking:
         """The whole pool, ranked when it is first asked for: naming all icons takes longer than all choices."""
         job = self.job
-        crowd = Crowd(job.people, job.seed, job.tracking, job.norm, self.model)
+        crowd = Crowd(job.people, job.seed, job.tracking, job.memory, self.model)
         return rank(self.icons, job.rig, crowd=crowd, parameters=0)
 
     def amber(self, point: Choice) -> tuple[str, ...]:

@@ -41,7 +41,7 @@ class GoalError(InputError):
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """What a part may be about: its comparison, units as factors to the unit of its value, bounds, and an example."""
+    """The quantity of a goal's part: its comparison, units as factors to the unit of its value, bounds, an example."""
 
     comparison: str
     units: Mapping[str, float]
@@ -114,7 +114,7 @@ class GoalPart:
 @checked
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What is wanted of a set.
+    """A goal for a set of icons.
 
     Attributes
     ----------
@@ -275,7 +275,7 @@ def _number(token: Any) -> float:
 def _where(text: str, problem: Any) -> str:
     place, token = getattr(problem, "pos_in_stream", None), getattr(problem, "token", None)
     if comma := re.search(r"\d,\d", text):
-        return f"goal {text!r}: {comma[0]!r} is no number; write {comma[0].replace(',', '.')}, with a decimal point"
+        return f"goal {text!r}: {comma[0]!r} is not a number; write {comma[0].replace(',', '.')}, with a decimal point"
     if place is None or not 0 <= place < len(text) or (token is not None and token.type == "$END"):
         if text.rstrip().endswith(","):
             return f"goal {text!r}: it ends with a comma: leave it out, or add another part such as 'safety green'"

@@ -29,7 +29,7 @@ TOLERANCE = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class SetOutcome:
-    """What goals are judged by: scores of a set, its icons, and its people.
+    """The scores by which goals are judged: of a set, its icons, and its people.
 
     `names` of all icons; `correct` and `bits` are means over people, `d_prime` that of the nearest pair; `detected`,
     `onset_s` (NaN: not felt), `durations_s` and `energies_J` (NaN on a thermode, which states none) of every icon.
@@ -78,7 +78,7 @@ class SetOutcome:
 
     @classmethod
     def of_pool(cls, pool: Pool, felt: FeltResult) -> SetOutcome:
-        """What goals for choices out of a pool are judged by, of which nobody named all icons."""
+        """Scores of choices out of a pool of which nobody named all icons."""
         names, energies_J = tuple(icon.name for icon in pool.icons), pool.energies_J
         where = felt.detected, felt.detection.onset_s, pool.durations_s, energies_J
         return cls(names, math.nan, math.nan, math.nan, *where, None, None, pool.amber, (), {})
@@ -141,7 +141,7 @@ class GoalResult:
 
     @property
     def binding(self) -> tuple[str, ...]:
-        """What is in the way of the parts that are not met, each once."""
+        """Obstacles to the parts that are not met, each once."""
         return tuple(dict.fromkeys(each.binding for each in self.parts if not each.met))
 
     def to_dict(self) -> dict[str, Any]:
@@ -179,7 +179,7 @@ def judge_goal(goal: Goal | str, found: Ranking | SetOutcome, choice: Choice | N
     Raises
     ------
     GoalError
-        For a text that is no goal, and for a share of people where ranking or choice have no draws.
+        For a text that is not a goal, and for a share of people where ranking or choice have no draws.
 
     Examples
     --------
@@ -220,7 +220,7 @@ def _value(part: GoalPart, outcome: SetOutcome) -> float:
 
 
 def _binding(part: GoalPart, outcome: SetOutcome) -> str:
-    """What is in the way: a pair, an icon, or those that cannot be played."""
+    """The obstacle: a pair, an icon, or those that cannot be played."""
     if part.quantity == SAFETY:
         names = (*outcome.red, *outcome.amber)
         return f"{_listed(names)} {'is' if len(names) == 1 else 'are'} not green"

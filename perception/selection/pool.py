@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..criteria import FELT_FROM
 from ..identification.episodes import dprimes_from_memory
 from ..identification.population import run_end_s
-from ..observer.observer import Norm, Observer
+from ..observer.observer import MemoryForm, Observer
 from ..ranking.scores import energy_J, objection
 from ..sensation.detection import detect
 from ..sensation.percept import perceive_many
@@ -94,12 +94,12 @@ class Pool:
         """Energy (J) that each icon takes of the driver; NaN on a thermode."""
         return np.array([energy_J(*each) for each in zip(self.traces, self.durations_s.tolist(), strict=True)])
 
-    def dprimes(self, kept: Pool, norm: Norm, observer: Observer) -> Array:
+    def dprimes(self, kept: Pool, memory: MemoryForm, observer: Observer) -> Array:
         """d′ from memory (these, kept) of the nominal person, on the longer clock."""
         n = max(self.cold.shape[1], kept.cold.shape[1])
         one, other = ((_held(pool.cold, n), _held(pool.warm, n)) for pool in (self, kept))
         names = [[trace.icon or "" for trace in pool.traces] for pool in (self, kept)]
-        return dprimes_from_memory(one, other, self.dt_s, observer, norm, (names[0], names[1]))
+        return dprimes_from_memory(one, other, self.dt_s, observer, memory, (names[0], names[1]))
 
     def limits(self, most_s: float | None, most_J: float | None) -> Totals:
         """The totals that a choice must keep, as costs of every icon."""
@@ -124,7 +124,7 @@ class Pool:
         return tuple(icon.name for icon, trace in found if objection(trace) is None and objection(trace, soft=True))
 
     def objections(self, goal: Goal | None, observer: Observer, must: Sequence[str] = ()) -> tuple[str | None, ...]:
-        """What speaks against each icon: it cannot be played, or misses what a goal asks of single icons.
+        """Objections to each icon: it cannot be played, or misses what a goal asks of single icons.
 
         Unless the goal says how often an icon is to be detected, the nominal person detects it in half of the trials,
         but for those that `must` be in.
@@ -188,7 +188,7 @@ def _held(psi: Array, n: int) -> Array:
 
 
 def _shape_of(icon: Icon, rig: Rig) -> object:
-    """What two icons share that play alike: control and corner points."""
+    """The common property of icons that play alike: control and corner points."""
     from thermicon.circuit.solver.inverse import baseline_C
     from thermicon.circuit.solver.steady import steady_state
 

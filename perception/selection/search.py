@@ -211,7 +211,7 @@ def search(
 def _merit(
     parts: Sequence[GoalPart], objective: Objective, scores: Appraisal, persons: dict[str, Array]
 ) -> tuple[float, ...]:
-    """What the better set has more of: nearness to the goal, then values of its parts, then of the objective.
+    """The order of sets: nearness to the goal, then values of its parts, then of the objective.
 
     `persons` are values of single people of all draws, as in `rank`, for parts about a share of people.
     """

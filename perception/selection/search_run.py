@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array
 from ..identification.population import ReceptorTemperatures, memory_dprime, respond
 from ..identification.task import USUAL
-from ..observer.observer import Norm, Observer
+from ..observer.observer import MemoryForm, Observer
 from ..observer.people import People
 from .candidates import Candidate, sample_candidates
 from .goal import Goal
@@ -34,14 +34,14 @@ SHRINK, FINEST = 0.85, 0.005
 
 @dataclass(frozen=True, slots=True)
 class Evaluator:
-    """How pools and sets are scored: by the nominal person unless there is a `crowd`.
+    """Scores of pools and sets: by the nominal person unless there is a `crowd`.
 
     `goal` says what is asked of single icons and of totals.
     """
 
     rig: Rig
     objective: Objective
-    norm: Norm
+    memory: MemoryForm
     seed: int
     observer: Observer
     tracking: str | None = None
@@ -57,14 +57,14 @@ class Evaluator:
         """The candidates on the nominal rig, and their d′ (people, icons, icons) from memory."""
         pool = Pool.of([candidate.icon for candidate in candidates], self.rig, self.observer)
         if self.crowd is None:
-            return pool, pool.dprimes(pool, self.norm, self.observer)[None]
+            return pool, pool.dprimes(pool, self.memory, self.observer)[None]
         how = self.rig, self.observer, pool.end_s, POOL_HZ, self.tracking
         met = ReceptorTemperatures.simulated(pool.icons, self.crowd, *how)
         felt = respond(met, self.crowd, self.observer, detection=False)
-        return pool, memory_dprime(felt, self.norm, self.crowd.memory, self.observer, USUAL)
+        return pool, memory_dprime(felt, self.memory, self.crowd.memory, self.observer, USUAL)
 
     def namings(self, d_prime: Array, pool: Pool) -> SubsetIdentification:
-        """Who is named what, for the objectives that count errors."""
+        """The namings of every person, for the objectives that count errors."""
         lapse = np.array([self.observer.lapse]) if self.crowd is None else self.crowd.lapse
         return SubsetIdentification.of(d_prime, lapse, pool.durations_s, self.seed)
 

@@ -277,7 +277,7 @@ def _climbed(
 
 
 def ceiling(namings: SubsetIdentification, count: int, objective: Objective) -> float:
-    """What `count` icons that are never confused would score: lapses are answered at random."""
+    """The score of `count` icons that are never confused: lapses are answered at random."""
     kept = float(np.mean(1.0 - namings.lapse))
     if objective == "correct":
         return kept + (1.0 - kept) / count

@@ -37,7 +37,7 @@ class Stimulus:
 
     @property
     def site(self) -> str:
-        """Where on the body."""
+        """The site on the body."""
         return self.traces[0].site
 
     @property
@@ -46,7 +46,7 @@ class Stimulus:
         return self.dt_s * np.arange(self.rows, dtype=np.float64)
 
     def received(self, observer: Observer) -> Both[Array]:
-        """What cold and warm receptors of an observer go by, shape (k, rows) each: °C, or W/m² into the skin."""
+        """Input of an observer's cold and warm receptors, shape (k, rows) each: °C, or W/m² into the skin."""
         each = [received(trace, observer) for trace in self.traces]
         return Both(*(np.stack([own[channel][: self.rows] for own in each]) for channel in range(2)))
 

@@ -84,7 +84,7 @@ class Detection:
 
     @property
     def courses(self) -> Array:
-        """What `reported` holds; a ValueError where it was not asked for."""
+        """The `reported` courses; a ValueError where they were not asked for."""
         if self.reported is None:
             raise ValueError(UNTIMED)
         return self.reported

@@ -51,7 +51,7 @@ class Percept(Drawn):
     conduction_s
         What the percept clock is later by, cold and warm, s.
     outside_data
-        A sentence for every way in which the trace lies outside what the prediction rests on.
+        One sentence for each respect in which the trace lies outside the published data.
 
     Raises
     ------

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def received(trace: Trace, observer: Observer) -> Both[Array]:
-    """What cold and warm receptors go by, (rows,) on the uniform clock of the trace: °C, or W/m² into the skin.
+    """Receptor input (rows,), cold and warm, on the uniform clock of the trace: °C, or W/m² into the skin.
 
     The trace begins steady, and its skin is linear: its display alone decides, unless a rig places its receptors.
     """

@@ -1,7 +1,4 @@
-"""Speed of families beside icons built one by one, and of reading and laying out text.
-
-Run with `pytest -m benchmark tests/benchmarks/test_family_speed.py -s`.
-"""
+"""Speed of families beside icons built one by one, and of reading and laying out text."""
 
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture

@@ -1,6 +1,6 @@
 """How the cost of ranking grows: in proportion to icons × people, from a hundred to a hundred thousand of them.
 
-Run with `pytest -m benchmark tests/benchmarks/test_rank_scale.py -s`; processor time is what is held against the line,
+Run with `pytest -m benchmark tests/benchmarks/test_rank_scale.py -s`; processor time is compared with the line,
 since other programs do not change it much.
 """
 

@@ -24,8 +24,8 @@ SWINGS = {
 }
 OTHER_SKINS = {
     "thenar": THENAR,
-    "thin horny layer": THENAR.with_(**{"skin.layer.0.thickness_mm": 0.022, "skin.layer.1.thickness_mm": 0.08}),
-    "thick horny layer": THENAR.with_(**{"skin.layer.0.thickness_mm": 0.3, "skin.cold_receptor_mm": 0.2}),
+    "thin stratum corneum": THENAR.with_(**{"skin.layer.0.thickness_mm": 0.022, "skin.layer.1.thickness_mm": 0.08}),
+    "thick stratum corneum": THENAR.with_(**{"skin.layer.0.thickness_mm": 0.3, "skin.cold_receptor_mm": 0.2}),
     "deeper receptors": THENAR.with_(**{"skin.cold_receptor_mm": 0.17, "skin.warm_receptor_mm": 0.4}),
 }
 

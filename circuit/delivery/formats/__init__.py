@@ -1,4 +1,4 @@
-"""thermicon.circuit.delivery.formats: a delivered drive → the bytes of a file; writers are loaded when asked for."""
+"""thermicon.circuit.delivery.formats: a delivered drive → the bytes of a file."""
 
 import re
 from importlib import import_module

@@ -1,4 +1,4 @@
-"""The description of a drive file format, the input of its writer, and the events of a cue that files may mark."""
+"""The interface of a drive file format: its description, its writer's input, the events that it can mark."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -39,7 +39,7 @@ class FormatError(InputError):
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """What the cue prescribes at a time in s; `level` in the unit of its corners (°C or A)."""
+    """A prescription of the cue at a time in s; `level` in the unit of its corners (°C or A)."""
 
     name: str
     time_s: float

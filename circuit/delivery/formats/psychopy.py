@@ -1,4 +1,4 @@
-"""PsychoPy: a conditions file with one row per icon, the drives, and a player that supervises them."""
+"""PsychoPy: a conditions file with one row per icon, drives, a supervising player."""
 
 import csv
 import io

@@ -108,7 +108,7 @@ CSV = Format(
     takes=PLAYS_SAMPLES,
     device="dac-16",
     source="thermicon's own columns, described in the sidecar",
-    how="put out each row's command at its time and hold it until the next",
+    how="output each row's value at its time and hold it until the next row",
     write=write,
     columns=columns,
 )

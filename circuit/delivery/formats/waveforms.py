@@ -1,4 +1,4 @@
-"""Files of waveforms: 16-bit WAV for DC-coupled sound outputs, each update a whole number of frames; and NI TDMS."""
+"""Waveform files: 16-bit WAV for DC-coupled sound outputs, NI TDMS."""
 
 import io
 import wave

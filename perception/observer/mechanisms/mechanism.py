@@ -21,5 +21,5 @@ class Mechanism:
     variable: Variable = "temperature"
 
     def sensitivity(self, channel: Channel, area_m2: float | None, site: str | None) -> float:
-        """How much smaller thresholds are than on the hand at the reference area; None: that area, or the hand."""
+        """Sensitivity relative to the hand at the reference area; None: that area, or the hand."""
         return 1.0

@@ -196,9 +196,9 @@ def _pause(pause_s: float) -> tuple[tuple[float, int], ...]:
 
 
 def judged(player: Player, held: Held, pauses: list[float], chain: list[float], worst: Worst) -> Worst:
-    """Play a file once, 2, 5 and 30 times and for ever with each pause, then with the pauses of a chain in their order.
+    """Play a file 1, 2, 5 and 30 times and endlessly with each pause, then with the pauses of a chain in their order.
 
-    After each, 60 s of the last value and of zero current; zero current for ever.
+    After each, 60 s of the last value and of zero current; zero current without end.
     """
     rest = player.rest(held)
     starts, spans = [rest], []
@@ -279,7 +279,7 @@ class Skin:
         self.push = (self.modes.back @ push[:, :, None])[:, :, 0]
 
     def steady(self, display_C: float) -> Array:
-        """Modes (W, n) under a display held for ever."""
+        """Modes (W, n) under a display held without end."""
         return (self.constant + self.push * display_C) / -self.modes.rates
 
     def run(self, display_C: Array, step_s: float, modes: Array, held: bool = False) -> tuple[Array, Array]:

@@ -59,7 +59,7 @@ def test_a_current_that_hangs_until_the_watchdog_cuts_it_passes_no_limit_and_muc
         assert after
         longer, _ = temperatures_pass(one.ensemble, current, state, np.linspace(0.0, 1.4 * watchdog, 300))
         broken |= not longer
-    assert broken, "the watchdog is no longer than it need be"
+    assert broken, "the watchdog could be longer"
 
 
 def test_a_cut_off_that_reacts_in_time_keeps_the_limits_with_the_driver_at_its_own() -> None:
@@ -165,7 +165,7 @@ def begun(how: str, rng: np.random.Generator, rest_s: float) -> State:
 
 @pytest.mark.parametrize("how", BEGINNINGS)
 def test_every_play_that_is_allowed_begins_between_the_bounds_from_which_faults_start(how: str) -> None:
-    """And not after a fifth of the rest: it is no longer than it need be, within what display and skin show."""
+    """And not after a fifth of the rest: it is not longer than necessary, within what display and skin show."""
     rng, (_, _, starts) = np.random.default_rng(BEGINNINGS.index(how)), beginning()
     warm, cold = (bound.nodes_C for bound in starts.bounds)
     assert 5.0 < starts.rest_s < 300.0

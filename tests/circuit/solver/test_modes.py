@@ -48,7 +48,7 @@ def test_a_bridge_heats_with_its_mean_square() -> None:
     network = network_of(THENAR)
     smooth = ConstantCurrent.of([network], np.array([0.4]), np.array([0.16]))
     bridge = ConstantCurrent.of([network], np.array([0.4]), np.array([0.4 * 1.5]))
-    assert bridge.rate_per_s == pytest.approx(smooth.rate_per_s), "heat of resistance is no rate"
+    assert bridge.rate_per_s == pytest.approx(smooth.rate_per_s), "heat of resistance is not a rate"
     plate = network.plates
     sink_K = bridge.rest_C[0, 0] - smooth.rest_C[0, 0]
     assert sink_K > 0.0

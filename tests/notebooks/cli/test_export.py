@@ -47,7 +47,7 @@ def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Pa
     for words in (
         *("safety is milder: contact resistance ±0 % instead of ±30 %", "cool-step: 8.01 s at 100 Hz on dac-16"),
         *("safety green in 3 scenarios", "warning: cool-step: dac-16 plays −1 … 1 A (−10 … 10 V through "),
-        *(f"wrote 2 drives with their sidecars into {out}: cool-step.json", "to play: put out each row's command"),
+        *(f"wrote 2 drives with their sidecars into {out}: cool-step.json", "to play: output each row's value"),
     ):
         assert words in said.stderr
     assert said.stderr.splitlines()[-1].startswith("safety is a calculation, not a medical or ethical clearance")
@@ -198,7 +198,7 @@ def test_a_pause_that_is_too_short_is_refused_with_the_shortest_as_cure(cli: Cli
     assert told is not None
     assert told[1] == told[2]
     assert 5.0 < float(told[1]) < 60.0
-    assert "the hardware must provide" not in said.stderr
+    assert "your hardware must provide" not in said.stderr
     said = cli.good(*arguments, "--pause", told[1])
     assert json.loads((out / "glow.json").read_text())["safety"]["repeated"]["pause_s"] == float(told[1])
 
@@ -250,11 +250,11 @@ def test_players_have_the_strictest_numbers_of_the_gate(glow: Export) -> None:
 
 def test_repetition_and_hardware_of_a_set_are_said_in_two_lines(glow: Export) -> None:
     (again, repeated), (hardware, demanded) = gate_words(glow.prepared)
-    assert (again, hardware) == ("repeated plays, in any order", "the hardware must provide")
+    assert (again, hardware) == ("repeated plays, in any order", "your hardware must provide")
     assert repeated.startswith("green, 27 to 29 plays in 30 min with 60 s between them; shortest safe pause: ")
     assert re.search(r"; back within 0.1 K of rest after \S+ s \(dip\) to \S+ s \(glow\)$", repeated)
     strictest = min((verdict(glow, k).demands.watchdog_s, name) for k, name in enumerate(("glow", "dip")))
-    assert demanded.startswith(f"watchdog {strictest[0]:g} s ({strictest[1]}), cut-off at ")
+    assert demanded.startswith(f"watchdog {strictest[0]:g} s ({strictest[1]}), cut-off outside ")
     assert "rest held for " in demanded
 
 
@@ -262,15 +262,15 @@ def test_what_no_watchdog_and_no_rest_can_do_is_said(glow: Export) -> None:
     gate = verdict(glow)
     worse = replace(gate.demands, watchdog_s=0.0, rest_before_first_play_s=None, zero_current_at_most_s=120.0)
     ready = [replace(glow.prepared[0], verdict=replace(gate, demands=worse)), glow.prepared[1]]
-    demanded = dict(gate_words(ready))["the hardware must provide"]
+    demanded = dict(gate_words(ready))["your hardware must provide"]
     assert demanded.startswith("a current that cannot hang (glow), for which no watchdog is quick enough, cut-off")
     assert "a display at its baseline before it touches the skin (glow)" in demanded
     assert "zero current in contact for 120 s at most" in demanded
     cut = gate.demands.cut_off_display_C
     warmer = replace(gate.demands, cut_off_display_C=replace(cut, low=cut.low + 1.0, high=cut.high + 1.0))
     both = [replace(glow.prepared[0], verdict=replace(gate, demands=each)) for each in (gate.demands, warmer)]
-    demanded = dict(gate_words(both))["the hardware must provide"]
-    assert f"cut-off at {number(cut.low + 1.0, 1)} and {number(cut.high, 1)} °C" in demanded
+    demanded = dict(gate_words(both))["your hardware must provide"]
+    assert f"cut-off outside {number(cut.low + 1.0, 1)} … {number(cut.high, 1)} °C" in demanded
 
 
 def test_the_page_of_the_gate_has_every_check_with_its_scenario_and_each_source_once() -> None:
@@ -282,4 +282,4 @@ def test_the_page_of_the_gate_has_every_check_with_its_scenario_and_each_source_
     assert shown.count(f"1 {source}") == 1
     delivered = delivered_html(ready)
     assert "<th>repeated plays</th><td>green, 12 plays" in delivered
-    assert delivered.count("the hardware must provide") == 1
+    assert delivered.count("your hardware must provide") == 1

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from thermicon.icons.atomic import OutputError
-from thermicon.notebooks.files.document import MOST_STEPS, Document, Edited, History
+from thermicon.notebooks.files.document import MOST_STEPS, Document, History, HistoryStep
 from thermicon.notebooks.files.versions import EVERY_S, MOST, MOST_LETTERS, Version, Versions
 
 
@@ -167,7 +167,7 @@ def test_what_is_not_kept_on_disk_is_kept_in_memory(tmp_path: Path) -> None:
     assert [each.name for each in tmp_path.iterdir()] == ["a.cue"]
 
 
-SIX = History(Edited("6", "dip"))
+SIX = History(HistoryStep("6", "dip"))
 DRAGGED = SIX.dragged("5", end=False).dragged("4", end=False).dragged("3", end=True)
 
 
@@ -199,7 +199,7 @@ def test_redo_is_cleared_by_a_new_edit_alone_and_the_icon_comes_with_its_step() 
     assert not history.changed("8").future
     assert SIX.redo() is SIX
     risen = SIX.changed("7").chosen("rise").changed("8")
-    assert (risen.undo().now, risen.undo().undo().now) == (Edited("7", "rise"), Edited("6", "dip"))
+    assert (risen.undo().now, risen.undo().undo().now) == (HistoryStep("7", "rise"), HistoryStep("6", "dip"))
 
 
 def test_the_oldest_steps_are_forgotten() -> None:

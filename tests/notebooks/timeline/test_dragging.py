@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tests.builders import messages, missing
 from thermicon.icons import load_library, parse
 from thermicon.notebooks.editing.cue_check import read_text
-from thermicon.notebooks.timeline.dragging import Dragged, drag
+from thermicon.notebooks.timeline.dragging import DragResult, drag
 from thermicon.notebooks.timeline.handles import MOST_HANDLES, handles_of
 
 HEAD = "cue 1\n"
@@ -28,7 +28,7 @@ def text_of(body: str, head: str = HEAD) -> str:
     return f"{head}icon dip {{\n  {body}\n}}\n"
 
 
-def line(dragged: Dragged, number: int = 3) -> str:
+def line(dragged: DragResult, number: int = 3) -> str:
     """One line of what a drag gave, which must not have been refused."""
     assert dragged.refused is None
     return dragged.text.splitlines()[number - 1].strip()
@@ -53,7 +53,7 @@ def test_everything_else_stays_byte_for_byte() -> None:
 
 def test_a_move_of_less_than_half_a_step_changes_nothing() -> None:
     text = text_of("cool by 4.02 °C over 2.01 s")
-    assert drag(text, "dip", 0, 2.02, 27.95) == Dragged(text)
+    assert drag(text, "dip", 0, 2.02, 27.95) == DragResult(text)
 
 
 def test_in_a_repeat_all_rounds_follow_and_the_corner_comes_under_the_pointer() -> None:

@@ -11,7 +11,7 @@ from thermicon.perception.evidence import sampling
 from thermicon.perception.evidence.__main__ import main
 from thermicon.perception.evidence.chains import Diagnostics
 from thermicon.perception.evidence.posterior import Posterior
-from thermicon.perception.evidence.sampling import Sampled, shipped_vector
+from thermicon.perception.evidence.sampling import SampledPosterior, shipped_vector
 from thermicon.perception.observer.draws import PosteriorDraws
 
 
@@ -21,12 +21,12 @@ def first_draw_is_nominal(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sampling, "in_the_middle", lambda *_: 0)
 
 
-def sampled(r_hat: float) -> Sampled:
+def sampled(r_hat: float) -> SampledPosterior:
     posterior = Posterior()
     size = len(posterior.priors)
     chains = shipped_vector(posterior) + 0.3 * np.random.default_rng(0).standard_normal((4, 300, size))
     found = Diagnostics(posterior.priors.names, np.full(size, r_hat), np.full(size, 900.0))
-    return Sampled(posterior, chains, 5000, found, 0)
+    return SampledPosterior(posterior, chains, 5000, found, 0)
 
 
 def test_draws_of_converged_chains_are_written_and_others_refused(

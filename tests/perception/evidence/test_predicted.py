@@ -8,7 +8,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.perception import Observer, confuse
 from thermicon.perception.evidence.baseline import nearer_of
-from thermicon.perception.evidence.predicted import Asked, laboratory_of, plausible_observers, predict
+from thermicon.perception.evidence.predicted import Query, laboratory_of, plausible_observers, predict
 from thermicon.perception.evidence.targets import Published, TargetRow
 from thermicon.perception.experiments.measure import Condition, Setting, logs_of
 from thermicon.perception.identification.skin_alone import SAMPLES, named_by_skin, noise_K, noticed_K
@@ -34,7 +34,7 @@ def test_the_seed_decides() -> None:
 
 
 def test_what_is_not_felt_is_none() -> None:
-    found = predict("x", [Asked("y", "cold", "K", "z", lambda _: float(np.inf))], "temperature", draws=2)
+    found = predict("x", [Query("y", "cold", "K", "z", lambda _: float(np.inf))], "temperature", draws=2)
     assert (found[0].value, found[0].low, found[0].high) == (None, None, None)
 
 

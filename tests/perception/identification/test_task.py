@@ -13,7 +13,7 @@ from thermicon.perception import Observer, Ranking, Task, cheapest_edit, choose,
 from thermicon.perception.identification import carry_over as carryover
 from thermicon.perception.identification.carry_over import carry_over
 from thermicon.perception.identification.episodes import Episodes, episode_distances
-from thermicon.perception.observer.channels import NORMS, USUAL_NORM
+from thermicon.perception.observer.channels import MEMORY_FORMS, USUAL_MEMORY
 from thermicon.perception.observer.people import People, draw_people
 from thermicon.perception.selection.edit import Edit
 from thermicon.perception.selection.request import Selection
@@ -63,9 +63,9 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(monkeypatch: pytest.Mon
               for psi in ("psi_cold", "psi_warm")]  # fmt: skip
     episodes = Episodes.of(*stacks, 0.04, Observer.load())
     place = {name: k for k, name in enumerate(left_behind.names)}
-    for k, norm in enumerate(NORMS):
+    for k, form in enumerate(MEMORY_FORMS):
         told = left_behind.apart[k, place["double-dip"], place["warming-step"]]
-        apart = episode_distances(episodes, episodes, Observer.load(), norm)
+        apart = episode_distances(episodes, episodes, Observer.load(), form)
         assert apart[0, 0, 1] == pytest.approx(told, rel=0.02)
 
 
@@ -171,8 +171,8 @@ def test_a_ranking_by_replay_counts_what_replay_leaves_behind() -> None:
     names = [icon.name for icon in ICONS]
     for row in found:
         place = names.index(row["name"])
-        assert tuple(row["carry_over"].values()) == left.worst_of(place, USUAL_NORM)
-        assert tuple(row["carry_over"].values()) != other.worst_of(place, USUAL_NORM)
+        assert tuple(row["carry_over"].values()) == left.worst_of(place, USUAL_MEMORY)
+        assert tuple(row["carry_over"].values()) != other.worst_of(place, USUAL_MEMORY)
 
 
 def test_names_are_given_after_ten_minutes_as_in_the_usual_task() -> None:
@@ -199,7 +199,7 @@ def test_icons_that_prescribe_current_are_replayed_too() -> None:
 
 def largest(rig: Rig, gap_s: float, tracking: str | None) -> float:
     """The largest d′ from memory between an icon by itself and after another one."""
-    return float(carry_over(ICONS, rig, 18.0, gap_s, tracking=tracking).apart[NORMS.index(USUAL_NORM)].max())
+    return float(carry_over(ICONS, rig, 18.0, gap_s, tracking=tracking).apart[MEMORY_FORMS.index(USUAL_MEMORY)].max())
 
 
 WAYS = [("forearm", "replay", 79.0), ("thenar", None, 61.0)]

@@ -8,7 +8,7 @@ import pytest
 
 from tests.builders import weighted_quantile
 from thermicon.perception.pilot import conditioning
-from thermicon.perception.pilot.conditioning import Answered, condition, systematic
+from thermicon.perception.pilot.conditioning import Namings, condition, systematic
 from thermicon.perception.pilot.laboratory_file import off_middle
 from thermicon.perception.pilot.likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights
 from thermicon.perception.pilot.playing import Confusions
@@ -51,9 +51,9 @@ def answers(place: float, participants: int, times: int, seed: int) -> np.ndarra
     return counts
 
 
-def answered(counts: np.ndarray) -> Answered:
+def answered(counts: np.ndarray) -> Namings:
     people = tuple(f"P{k}" for k in range(len(counts)))
-    return Answered(Trials(("a", "b", "c"), people, counts), Toy())  # type: ignore[arg-type]
+    return Namings(Trials(("a", "b", "c"), people, counts), Toy())  # type: ignore[arg-type]
 
 
 def exact(counts: np.ndarray) -> tuple[float, float]:

@@ -16,7 +16,7 @@ from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.conditioning import MeasuredValues, condition
 from thermicon.perception.pilot.likelihood import effective, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import (
-    Emulated,
+    Emulator,
     SimulatedMeasurements,
     log_likelihood,
     person_covariance,
@@ -66,7 +66,7 @@ def test_a_polynomial_is_as_likely_as_what_it_was_fitted_to_where_that_is_straig
     some = Measurements(USUAL[:2], ("P1", "P2", "P3", "P4"), values, unknown, np.ones((4, 2)))
     each = SimulatedMeasurements(mean, np.exp(2.0 * people)[:, :, None] * np.eye(2), np.exp(within))
     found = log_likelihood(some, each)
-    assert (Emulated.fit(some, place, each, np.ones(400))(place) - found).std() < 0.02 * found.std()
+    assert (Emulator.fit(some, place, each, np.ones(400))(place) - found).std() < 0.02 * found.std()
 
 
 def test_forced_choice_agrees_with_the_rows_of_the_evidence(prior: LaboratoryPrior) -> None:

@@ -15,7 +15,7 @@ from thermicon.perception.observer.constants import BETWEEN_LABORATORIES
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.observer.observer_model import ObserverModel
-from thermicon.perception.pilot.conditioning import Answered
+from thermicon.perception.pilot.conditioning import Namings
 from thermicon.perception.pilot.laboratory_file import middle_of
 from thermicon.perception.pilot.observed import Observed, observed
 from thermicon.perception.pilot.prediction import Fit
@@ -30,12 +30,12 @@ def answers(icons: IconSet, rig: Rig) -> Trials:
 
 
 @pytest.fixture(scope="module")
-def found(icons: IconSet, rig: Rig, answers: Trials) -> Observed[Answered, Fit]:
+def found(icons: IconSet, rig: Rig, answers: Trials) -> Observed[Namings, Fit]:
     return observed(answers, icons, rig, others=[icons], draws=40, seed=1)
 
 
 @pytest.fixture(scope="module")
-def lab(found: Observed[Answered, Fit], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def lab(found: Observed[Namings, Fit], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Records of what was kept, with the table of draws beside them."""
     path = tmp_path_factory.mktemp("kept") / "lab.toml"
     for name, text in zip((path, path.with_suffix(".csv")), found.files(), strict=True):
@@ -57,7 +57,7 @@ def test_first_laboratories_are_the_draws_and_coordinates_lead_back() -> None:
     assert abs(offset.std() - 1.0) < 0.1
 
 
-def test_the_result_holds_what_was_asked(found: Observed[Answered, Fit], answers: Trials) -> None:
+def test_the_result_holds_what_was_asked(found: Observed[Namings, Fit], answers: Trials) -> None:
     own = found.to_dict()
     assert own["trials"] == answers.total == 54
     assert own["counts"] == answers.pooled.astype(int).tolist()
@@ -73,7 +73,7 @@ def test_the_result_holds_what_was_asked(found: Observed[Answered, Fit], answers
         assert len(each.pairs) == 15
 
 
-def test_files_are_read_by_observer_and_draws(found: Observed[Answered, Fit], lab: Path) -> None:
+def test_files_are_read_by_observer_and_draws(found: Observed[Namings, Fit], lab: Path) -> None:
     table, draws = found.files()[1], PosteriorDraws.load(lab.with_suffix(".csv"))
     assert len(draws) == 20
     assert draws.values(BETWEEN_LABORATORIES).max() < 1e-5  # these draws are of this laboratory
@@ -93,7 +93,7 @@ def test_files_are_read_by_observer_and_draws(found: Observed[Answered, Fit], la
         assert np.array_equal(getattr(model.people(9, 4), field), getattr(whole.people(9, 4), field)), field
 
 
-def test_memory_stands_beside_the_constants_of_each_draw(found: Observed[Answered, Fit], lab: Path) -> None:
+def test_memory_stands_beside_the_constants_of_each_draw(found: Observed[Namings, Fit], lab: Path) -> None:
     draws = PosteriorDraws.load(lab.with_suffix(".csv"))
     assert draws.memory_names == ("share of the scatter of ratings", "bar of an episode", "memory noise (episodes)")
     assert np.array_equal(draws.draws, found.draws().draws) and np.array_equal(draws.memory, found.draws().memory)
@@ -116,7 +116,7 @@ def test_memory_stands_beside_the_constants_of_each_draw(found: Observed[Answere
     ],
 )
 def test_memory_that_cannot_be_is_refused(
-    found: Observed[Answered, Fit], tmp_path: Path, memory: tuple[str, ...], said: str
+    found: Observed[Namings, Fit], tmp_path: Path, memory: tuple[str, ...], said: str
 ) -> None:
     path = tmp_path / "lab.csv"
     lines = [line for line in found.files()[1].splitlines() if not line.startswith("# sha256")]
@@ -144,7 +144,7 @@ def test_a_kept_laboratory_is_the_prior_of_the_next_prediction_and_has_its_memor
         LaboratoryPrior.of(lab, "episodes")
 
 
-def test_thresholds_carry_the_offset_of_the_laboratory(found: Observed[Answered, Fit]) -> None:
+def test_thresholds_carry_the_offset_of_the_laboratory(found: Observed[Namings, Fit]) -> None:
     values, draws = found.prior.values(found.conditioned.after), found.draws()
     names = found.prior.names
     drive = values[:, names.index("warm threshold drive")]
@@ -195,7 +195,7 @@ def test_draws_judge_with_their_own_memory(icons: IconSet, rig: Rig, tmp_path: P
     )
 
 
-def test_the_laboratory_in_the_middle_predicts_the_mean(found: Observed[Answered, Fit]) -> None:
+def test_the_laboratory_in_the_middle_predicts_the_mean(found: Observed[Namings, Fit]) -> None:
     some, played = found.conditioned.after, found.confusions_after
     number = middle_of(some, found.prior.values(some), played.correct[:, None], found.played)
     assert abs(played.correct[number] - played.correct.mean()) < 1.2 * played.correct.std()

@@ -175,15 +175,15 @@ def test_what_does_not_exist_is_null() -> None:
 
 
 @pytest.mark.slow
-def test_changes_of_order_under_another_norm_are_told() -> None:
+def test_changes_of_order_under_the_other_memory_are_reported() -> None:
     icons = load_library("wave-confusions")
-    by = {norm: rank(icons, RIG, people=10, parameters=0, memory=norm) for norm in ("episodes", "naming")}
-    changes = by["episodes"].norm_changes["naming"]
+    by = {form: rank(icons, RIG, people=10, parameters=0, memory=form) for form in ("episodes", "naming")}
+    changes = by["episodes"].memory_changes["naming"]
     assert changes
-    places = {norm: {icon.name: icon.proportion_correct for icon in ranking.icons} for norm, ranking in by.items()}
+    places = {form: {icon.name: icon.proportion_correct for icon in ranking.icons} for form, ranking in by.items()}
     for better, worse in changes:
         assert places["episodes"][better] > places["episodes"][worse] + 0.01
-        # The other norm is judged by fewer presentations.
+        # The other form is judged by fewer presentations.
         assert places["naming"][worse] > places["naming"][better] - 0.03
 
 

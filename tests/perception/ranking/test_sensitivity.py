@@ -7,7 +7,7 @@ from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import Observer, draw_people
 from thermicon.perception.identification.laboratory_draws import memory_parameters
-from thermicon.perception.observer.channels import NORMS
+from thermicon.perception.observer.channels import MEMORY_FORMS
 from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.ranking.sensitivity import (
@@ -62,7 +62,7 @@ def test_effects_are_ordered_and_measurements_too(found: Sensitivity) -> None:
 def test_every_constant_has_its_measurement() -> None:
     draws = PosteriorDraws.load()
     names = [name for name in draws.names if name not in draws.header.offsets]
-    names += [parameter.name for norm in NORMS for parameter in memory_parameters(norm)]
+    names += [parameter.name for form in MEMORY_FORMS for parameter in memory_parameters(form)]
     names += ["laboratory, cold", "laboratory, warm", "contact resistance", "thickness of the outermost layer"]
     assert {base_name(name) for name in names} == set().union(*load_measurements().values())
 
