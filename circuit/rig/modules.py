@@ -4,8 +4,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from thermicon.icons.near_words import did_you_mean
-
 from ..records import Record, RecordError, RecordTable, shipped_records
 from .faults import PARAMETERS, Unusual, sentence, unusual
 from .module import Datasheet, Extraction, Peltier, at_mean_C
@@ -57,7 +55,7 @@ class Build:
 
 
 def build_of(name: str) -> Build:
-    """Return the build of a shipped module; raises RecordError with the nearest name."""
+    """Return the build of a shipped module; raises RecordError that names all."""
     record = _records(name)[0]
     printed = dict(record.extra)
     size, plate = printed.get("footprint_mm"), printed.get("plate_J_per_K")
@@ -66,7 +64,7 @@ def build_of(name: str) -> Build:
 
 
 def load_module(name: str) -> tuple[Datasheet, ...]:
-    """Return the data sheets of a shipped module, coolest hot side first; raises RecordError with the nearest name."""
+    """Return the data sheets of a shipped module, coolest hot side first; raises RecordError that names all."""
     sheets = [
         Datasheet.model_validate({key: record.get(key) for key in Datasheet.model_fields}) for record in _records(name)
     ]
@@ -75,7 +73,7 @@ def load_module(name: str) -> tuple[Datasheet, ...]:
 
 def _records(name: str) -> list[Record]:
     if name not in module_names():
-        raise RecordError(f"{name}: no such module; {did_you_mean(name, module_names())}")
+        raise RecordError(f"{name}: no such module; known: {', '.join(module_names())} (thermicon list modules)")
     return [record for record in module_table() if record.get("module") == name]
 
 

@@ -19,8 +19,10 @@ from .options import CrowdOptions, RigOptions, flag, opt, read_set, write_text
 def list_command(
     rig: RigOptions,
     what: Annotated[
-        Literal["icons", "rigs", "devices", "formats"] | None,
-        typer.Argument(metavar="icons|rigs|devices|formats", show_default=False, help="What to list.  [default: all]"),
+        Literal["icons", "rigs", "modules", "devices", "formats"] | None,
+        typer.Argument(
+            metavar="icons|rigs|modules|devices|formats", show_default=False, help="What to list.  [default: all]"
+        ),
     ] = None,
     cite: Annotated[
         str | None,
@@ -36,7 +38,7 @@ def list_command(
         ),
     ] = None,
 ) -> None:
-    """List shipped icon sets, rigs, devices and file formats of drives; cite them, or copy one to start from."""
+    """List shipped icon sets, rigs, modules, devices and formats of drives; cite them, or copy one to start from."""
     if rig.rig and cite is None:
         raise usage("applies to the paragraph of --cite", "--rig")
     if rig.set and cite is None and copy is None:
@@ -50,7 +52,8 @@ def list_command(
     elif copy is not None:
         copy_shipped(*copy, rig.changes)
     else:
-        shown = {"icons": show_icons, "rigs": show_rigs, "devices": show_devices, "formats": show_formats}
+        shown = {"icons": show_icons, "rigs": show_rigs, "modules": show_modules, "devices": show_devices,
+                 "formats": show_formats}  # fmt: skip
         for place, each in enumerate([what] if what else shown):
             if place:
                 typer.echo("")
@@ -128,6 +131,21 @@ def show_rigs() -> None:
     notes = [f"{rig.name}: {warning}" for rig in rigs for warning in rig.warnings]
     said = "flux: heat flow into bare skin at rest; negative because skin loses heat."
     show([grid(("name", "title", "site", *numbers), rows, numbers), "\n".join([said, *notes])])
+
+
+def show_modules() -> None:
+    """Print the modules on record, a line for each data sheet."""
+    from thermicon.circuit.rig.modules import build_of, module_table
+
+    numbers = ("cm²", "J/K", "hot °C", "Imax A", "Vmax V", "Qmax W", "ΔTmax K")
+    rows = []
+    for record in module_table():
+        name, build = str(record.get("module")), build_of(str(record.get("module")))
+        known = [*("–" if each is None else f"{each:g}" for each in (build.face_cm2, build.plate_J_per_K))]
+        sheet = (f"{float(record.get(key)):g}" for key in ("t_hot_C", "i_max_A", "v_max_V", "q_max_W", "dt_max_K"))
+        rows.append((name, *known, *sheet))
+    said = "cm² of face, J/K of each plate (–: not on record), hot side. To use one: --set module.name=NAME"
+    show([grid(("module", *numbers), sorted(rows), numbers), said])
 
 
 def show_icons() -> None:
