@@ -1,11 +1,14 @@
 """The nearest cue that a rig can reach, for one that it cannot: the same shape slower, or smaller."""
 
 import math
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from thermicon.icons import Icon
 from thermicon.icons.model.arguments import checked
+from thermicon.icons.model.format import statement_text
+from thermicon.icons.model.icon import all_played
 from thermicon.icons.model.statements import Broken, Play, Pulse, Ramp, Repeat, Return, Statement, Step, Total, Wave
 
 from ..rig.rig import AnyRig, Rig
@@ -15,27 +18,32 @@ from ..solver.simulate import simulate
 
 FARTHEST = 64.0
 """Factor by which a cue is slowed down, or made smaller, at most; assumed."""
+LONG_NUMBER = re.compile(r"(\.\d{3})\d+")
+"""Cut, not rounded: a change or rate is then on the side that is reached."""
 STEPS = 14
 """Bisections in the logarithm of the factor: ln 64 / 2^14 is below the three digits that are returned."""
 
 
 @dataclass(frozen=True, slots=True)
 class Nearest:
-    """A reachable cue, its ramps `slower` times as slow or its changes `smaller` times as large."""
+    """A reachable cue, its ramps `slower` times as slow or its changes `smaller` times as large; `lines`: old → new."""
 
     icon: Icon
     slower: float
     smaller: float
+    lines: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return f"Nearest({self.icon.name!r}: {self.sentence})"
 
     @property
     def sentence(self) -> str:
-        """What to change, in one sentence."""
+        """What to change, in one sentence with the lines."""
         if self.slower > 1:
-            return f"it is reached with its ramps {self.slower:.3g} times as slow"
-        return f"it is reached with its changes {self.smaller:.3g} times as large, in the same time"
+            how = f"ramps {self.slower:.3g} times as slow"
+        else:
+            how = f"changes {self.smaller:.3g} times as large, in the same time"
+        return f"it is reached with its {how}{': ' if self.lines else ''}{'; '.join(self.lines)}"
 
 
 @checked
@@ -64,7 +72,7 @@ def nearest_reachable(icon: Icon, rig: AnyRig = None) -> Nearest | None:
     >>> from thermicon.icons import load_library
     >>> cue = load_library("cooling-step-skin").icons[0]
     >>> nearest_reachable(cue, Rig.load("thenar").with_(**{"driver.current_limit_A": 1.0})).sentence
-    'it is reached with its changes 0.8 times as large, in the same time'
+    'it is reached with its changes 0.8 times as large, in the same time: cool by 8 °C at 4 °C/s → ...'
     """
     on = Rig.of(rig, icon.context.site)
     if icon.context.control == "current" or _reached(icon, on):
@@ -76,9 +84,29 @@ def nearest_reachable(icon: Icon, rig: AnyRig = None) -> Nearest | None:
         return None
     if smaller is None or (slower is not None and slower <= smaller):
         assert slower is not None
-        return Nearest(changed(icon, base, slower=slower), slower, 1.0)
+        found = changed(icon, base, slower=slower)
+        return Nearest(found, slower, 1.0, _lines(icon, found))
     least = _three_digits(1.0 / smaller, math.floor)  # never rounded towards what is not reached
-    return Nearest(changed(icon, base, smaller=least), 1.0, least)
+    found = changed(icon, base, smaller=least)
+    return Nearest(found, 1.0, least, _lines(icon, found))
+
+
+def _lines(old: Icon, new: Icon) -> tuple[str, ...]:
+    """The lines that differ, each once; none where an icon that is played has its lines elsewhere."""
+
+    def lines(icon: Icon) -> list[str]:
+        kept = (part for part in icon.statements if not isinstance(part, Total))
+        return "\n".join(statement_text(part, icon.context.control) for part in kept).splitlines()
+
+    if any(all_played(old.statements)):
+        return ()
+    pairs = zip(lines(old), lines(new), strict=True)
+    told = (f"{one.strip()} → {LONG_NUMBER.sub(_cut, other.strip())}" for one, other in pairs if one != other)
+    return tuple(dict.fromkeys(told))
+
+
+def _cut(number: re.Match[str]) -> str:
+    return number[1].rstrip("0").rstrip(".")
 
 
 def changed(icon: Icon, base_C: float, *, slower: float = 1.0, smaller: float = 1.0) -> Icon:

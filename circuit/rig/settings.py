@@ -92,6 +92,19 @@ def put(document: dict[str, Any], key: str, value: object) -> None:
         place[parts[-1]] = value
 
 
+def restate(document: dict[str, Any], keys: Iterable[str]) -> None:
+    """Say in [source] which keys were set, beside what stands there of other keys of their table."""
+    said = document.setdefault("source", {})
+    for key in keys:
+        parts = key.split(".")
+        if parts[:2] == ["skin", "layer"] and len(parts) > 2 and parts[2].isdecimal():
+            parts[2] = document["skin"]["layer"][int(parts[2])]["name"]
+        tables = (".".join(parts[:end]) for end in range(len(parts) - 1, 0, -1))
+        if table := next((each for each in tables if each in said), None):
+            said[table] += f"; {parts[-1]} is set by --set"
+        said[".".join(parts)] = "set by --set"
+
+
 def _check_display(document: Mapping[str, Any], part: str, key: str) -> None:
     """Refuse a key of a module on a thermode rig, and a key of a thermode on a rig with a module."""
     if "thermode" in document and part in ("module", "heat_sink", "driver", "controller"):

@@ -14,7 +14,7 @@ from thermicon.icons.number_text import number, span
 
 from ..files.outputs import check_output
 from ..messages import Missing, fail, note, usage
-from .options import flag, opt
+from .options import MOST_ICONS, command_text, flag, opt
 
 if TYPE_CHECKING:
     from thermicon.icons import IconSet
@@ -109,6 +109,8 @@ def check(files: Sequence[str]) -> None:
         fail("\n\n".join(problems))
     for line in lines:
         typer.echo(line)
+    if len(files) == 1:
+        note(f"Next: {command_text(files, paths=True, command='rank' if 1 < len(icons) <= MOST_ICONS else 'simulate')}")
 
 
 def summary(icons: IconSet) -> str:

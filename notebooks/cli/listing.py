@@ -1,5 +1,6 @@
 """``thermicon list``: what is shipped, how it is cited, and copies of it to start from."""
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Literal
@@ -88,27 +89,28 @@ def copy_shipped(name: str, output: Path, changes: Sequence[str] = ()) -> None:
 
     from ..study.study_file import SHIPPED
 
+    own = shlex.quote(str(output))
     kinds = (
-        (library_names(), "icons", "library", "{}.cue"),
-        (rig_names(), "circuit", "rigs", "{}.toml"),
-        (device_names(), "circuit", "devices", "{}.toml"),
-        (("study", "example"), "notebooks", "data", SHIPPED),
-    )
-    for names, package, folder, file in kinds:
+        (library_names(), "icons", "library", "{}.cue", f"thermicon rank {own}"),
+        (rig_names(), "circuit", "rigs", "{}.toml", f"thermicon rank six-icons --rig {own}"),
+        (device_names(), "circuit", "devices", "{}.toml", f"thermicon export SET --device {own} --to FORMAT -o drives"),
+        (("study", "example"), "notebooks", "data", SHIPPED,
+         f"write your set, rig and device into {own}, then thermicon study {own} -o study"),
+    )  # fmt: skip
+    for names, package, folder, file, following in kinds:
         if name in names:
             check_output(output, (Path(file).suffix,), f"a copy of {name}")
             if output.exists():
                 raise OutputError(f"{output} already exists and was kept; give another name")
             if changes and folder != "rigs":
-                raise usage(f"changes keys of a rig, and {name} is none", "--set")
+                raise usage(f"changes keys of a rig, and {name} is none: change the copy with a text editor", "--set")
             if changes:
                 load_rig(name, changes).save(output, output.stem)
                 note(f"wrote {output}")
-                return
-            text = (
-                resources.files(f"thermicon.{package}").joinpath(folder, file.format(name)).read_text(encoding="utf-8")
-            )
-            write_text(text, output)
+            else:
+                shipped = resources.files(f"thermicon.{package}").joinpath(folder, file.format(name))
+                write_text(shipped.read_text(encoding="utf-8"), output)
+            note(f"Next: {following}")
             return
     known = [each for names, *_ in kinds for each in names]
     raise usage(f"{name!r} is not shipped; {did_you_mean(name, known)}", "--copy")

@@ -183,7 +183,8 @@ def rank_command(
     elif crowd.memory == "rules":
         show(rules_report(found.ranking, icons.title))
     else:
-        show(rank_report(found, icons.title, near, after_ranking(found, commands(files, rig, crowd)), details))
+        following = after_ranking(found, commands(files, rig, crowd), near)
+        show(rank_report(found, icons.title, near, following, details))
 
 
 def doubt_about(

@@ -43,7 +43,7 @@ def detail_blocks(made: SetReport) -> list[Block]:
 def trouble_lines(icons: Sequence[IconScore], cures: Mapping[str, str]) -> list[str]:
     """Return one line per icon that is unsafe or not reached, with its cure, and one line on exceeded soft limits."""
     lines = []
-    for icon in icons:
+    for icon in sorted(icons, key=lambda icon: icon.name not in cures):
         if icon.reason:
             states = ["NOT SAFE"] * (not icon.safe) + ["not reached"] * (not icon.reachable)
             cure = f"; {cures[icon.name]}" if icon.name in cures else ""

@@ -27,7 +27,9 @@ def test_each_kind_is_listed_within_80_columns(cli: Cli, what: str) -> None:
 def test_a_copy_reads_as_what_was_copied_and_replaces_nothing(cli: Cli, tmp_path: Path, name: str, ending: str) -> None:
     path = tmp_path / f"mine{ending}"
     said = cli("list", "--copy", name, path)
-    assert (said.exit_code, said.stdout, said.stderr) == (0, "", f"wrote {path}\n")
+    written, following = said.stderr.splitlines()
+    assert (said.exit_code, said.stdout, written) == (0, "", f"wrote {path}")
+    assert following.startswith("Next: ") and str(path) in following
     if ending == ".cue":
         assert read_cue(path).content_hash == load_library(name).content_hash
     elif name == "study":
