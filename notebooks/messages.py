@@ -27,6 +27,8 @@ BAD_INPUT = 1
 REFUSED = 3
 INTERRUPTED = 130
 DEFAULT_RIG = "thenar"
+FORESEEN = 0.05
+"""Share of the steps from which on a bar says how long the rest takes: the first ones compile, and are uneven."""
 _QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
 _VERBOSE: ContextVar[bool] = ContextVar("verbose", default=False)
 
@@ -244,12 +246,12 @@ def progress_bar(what: str) -> Iterator[Progress | None]:
         return
     from tqdm import tqdm
 
-    form = "{desc}: {bar} {n_fmt}/{total_fmt}, {remaining} left"
+    form, early = "{desc}: {bar} {n_fmt}/{total_fmt}, {remaining} left", "{desc}: {bar} {n_fmt}/{total_fmt}, ? left"
     size = get_terminal_size()  # 80 by 24 where a terminal does not say how large it is, and has no room for a bar
-    with tqdm(desc=what, leave=False, file=sys.stderr, bar_format=form, ncols=size.columns, nrows=size.lines) as bar:
+    with tqdm(desc=what, leave=False, file=sys.stderr, bar_format=early, ncols=size.columns, nrows=size.lines) as bar:
 
         def advance(done: int, total: int) -> None:
-            bar.total = total
+            bar.total, bar.bar_format = total, early if done < FORESEEN * total else form
             bar.update(done - bar.n)
 
         yield advance

@@ -100,13 +100,23 @@ def checked(function: F) -> F:
         try:
             return function(*args, **given)
         except ValueError as wrong:
-            if type(wrong) is not ValueError:
+            if type(wrong) is not ValueError or _called_back(wrong, (*args, *given.values())):
                 raise
             raise error(f"{place}: {wrong}") from wrong
 
     # With the function's own globals: doctest looks by them for the examples of a module.
     made = FunctionType(call.__code__, own.__globals__, own.__name__, None, call.__closure__)
     return cast(F, update_wrapper(made, function))
+
+
+def _called_back(error: ValueError, given: Iterable[Any]) -> bool:
+    """Whether an error comes out of a function that was handed in, such as one that shows progress."""
+    from traceback import walk_tb
+
+    theirs = [
+        getattr(each, "__code__", getattr(type(each).__call__, "__code__", None)) for each in given if callable(each)
+    ]
+    return any(frame.f_code in theirs for frame, _ in walk_tb(error.__traceback__))
 
 
 class _Names(dict[str, Any]):

@@ -14,7 +14,7 @@ from thermicon.icons.number_text import number, span
 
 from ..files.outputs import check_output
 from ..messages import Missing, fail, note, usage
-from .options import MOST_ICONS, command_text, flag, opt
+from .options import MOST_ICONS, command_text, flag, opt, site_meant
 
 if TYPE_CHECKING:
     from thermicon.icons import IconSet
@@ -103,6 +103,8 @@ def check(files: Sequence[str]) -> None:
             icons = read_cue(file)
             # Families expand lazily, so an icon's own errors may show only here.
             lines.append(f"{Path(file).name}: {summary(icons)}")
+            if meant := site_meant(icons.context.site):
+                note(f"warning: {file}: no rig is for the site {icons.context.site}{meant}")
         except CueErrors as errors:
             problems.append(str(errors))
     if problems:

@@ -10,12 +10,14 @@ import inspect
 import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import Field, dataclass, fields, is_dataclass, replace
+from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
 
 import typer
 
 from thermicon.icons.atomic import complete_or_absent
+from thermicon.icons.near_words import nearest_words
 from thermicon.perception.criteria import MOST_ICONS
 
 from ..figures.style import SCREEN, Look, read_width_mm
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
 
     from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
-    from thermicon.perception import Ranking
+    from thermicon.perception import Goal, Ranking
     from thermicon.perception.observer.observer_model import ObserverModel
 
 MOST_PEOPLE, MOST_DRAWS, LARGEST_SEED = 100_000, 10_000, 2**32 - 1
@@ -97,11 +99,20 @@ def commands(files: Sequence[str], rig: Options, crowd: Options) -> Callable[...
 
 
 Goals = Annotated[
-    str | None,
+    list[str] | None,
     opt(
-        "TEXT", 'What is wanted, such as "90 % correct for 95 % of people, time <= 10 s, safety green".', name="--goal"
+        "TEXT",
+        'What is wanted, such as "90 % correct for 95 % of people, time <= 10 s, safety green"; may be repeated.',
+        name="--goal",
     ),
 ]
+
+
+def goal_of(texts: list[str] | None) -> Goal | None:
+    """The goal with the parts of all texts; None without one."""
+    from thermicon.perception import Goal
+
+    return Goal.parse(", ".join(texts)) if texts else None
 
 
 class Options:
@@ -263,9 +274,11 @@ def read_set(files: Sequence[str]) -> IconSet:
     owner: dict[str, str] = {}
     for file, each in zip(files, sets, strict=True) if len(sets) > 1 else ():
         if each.context != joined.context:
+            pairs = zip(_context_words(each), _context_words(joined), strict=True)
+            told = ", ".join(f"{one}, not {other}" for one, other in pairs if one != other)
             raise JoinError(
-                f"{file} differs from {files[0]} in site, control or baseline, which one set has in common: put the "
-                "icons into one file, or take each file by itself"
+                f"{file} has {told} as in {files[0]}, and one set has these in common: put the icons into one file, "
+                "or take each file by itself"
             )
         for icon in each:
             if icon.name in owner:
@@ -281,6 +294,16 @@ def read_set(files: Sequence[str]) -> IconSet:
     return joined
 
 
+def _context_words(icons: IconSet) -> tuple[str, ...]:
+    """What a set says of where and what it plays."""
+    site, control, baseline_C = icons.context.site, icons.context.control, icons.context.baseline_C
+    return (
+        f"site {site or 'none'}",
+        f"control {control}",
+        f"baseline {'none' if baseline_C is None else f'{baseline_C:g} °C'}",
+    )
+
+
 def theirs_of(columns: Sequence[str] | None) -> dict[str, str]:
     """What a table calls our columns, by ``--column NAME=THEIRS``."""
     pairs = [column.partition("=") for column in columns or []]
@@ -293,7 +316,17 @@ def site_warnings(file: str, icons: IconSet | Icon, rig: Rig) -> tuple[str, ...]
     """Warnings of a set for another site than the rig's."""
     if icons.context.site in (None, rig.site):
         return ()
-    return (f"{file} is for the site {icons.context.site}, the rig {rig.name} is for {rig.site}",)
+    meant = site_meant(icons.context.site)
+    return (f"{file} is for the site {icons.context.site}, the rig {rig.name} is for {rig.site}{meant}",)
+
+
+def site_meant(site: str | None) -> str:
+    """Which site of a shipped rig is meant by one that no rig has; empty where none is alike."""
+    known = {
+        each.name.removesuffix(".toml") for each in resources.files("thermicon.circuit").joinpath("rigs").iterdir()
+    }
+    near = [] if site is None or site in known else nearest_words(site.lower(), known, cutoff=0.75)
+    return f"; did you mean site {near[0]}?" if near else ""
 
 
 def pick(icons: IconSet, name: str | None, most: int = MOST_ICONS) -> list[Icon]:
@@ -325,9 +358,10 @@ def write_text(text: str, output: Path, more: str = "", encoding: str = "utf-8")
     if output == STDOUT:
         typer.echo(text, nl=False)
         return
+    replaced = " (replaced what was there)" * output.exists()
     with complete_or_absent(output) as draft:
         draft.write_text(text, encoding=encoding, newline="\n")
-    note(f"wrote {output}{more}")
+    note(f"wrote {output}{more}{replaced}")
 
 
 def write_frame(frame: pd.DataFrame, output: Path) -> None:

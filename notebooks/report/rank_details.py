@@ -128,7 +128,7 @@ def norm_points(ranking: Ranking) -> Iterator[str]:
         else:
             more = f" ({count_of(len(changes) - 1, 'more change')} of order)" if len(changes) > 1 else ""
             order = f"{changes[0][1]} before {changes[0][0]}{more}"
-        yield f"with the {norm} distance: {percent(share)} correct, {order}"
+        yield f"with the {norm} distance: {percent(share)} correct, {order}; no data settle which of the two is right"
 
 
 def carried_points(ranking: Ranking) -> Iterator[str]:
