@@ -109,7 +109,7 @@ def test_an_error_of_a_function_that_is_handed_in_is_not_ours() -> None:
     def progress(done: int, total: int) -> None:
         raise ValueError("mine")
 
-    with pytest.raises(ValueError, match="^mine$") as told:
+    with pytest.raises(ValueError, match=r"^mine$") as told:
         rank("six-icons", people=2, parameters=0, progress=progress)
     assert type(told.value) is ValueError
 

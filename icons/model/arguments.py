@@ -79,7 +79,7 @@ def checked(function: F) -> F:
     if isinstance(function, type):
         setattr(function, "__init__", checked(vars(function)["__init__"]))  # noqa: B010
         return function
-    own, hints, error = cast(FunctionType, function), dict[str, Any](), InputError
+    own, hints, error, theirs = cast(FunctionType, function), dict[str, Any](), InputError, _called_back
     place = own.__qualname__.removesuffix(".__init__")
     names = own.__code__.co_varnames[: own.__code__.co_argcount]
     rest = own.__code__.co_varnames[own.__code__.co_argcount + own.__code__.co_kwonlyargcount :][:1]
@@ -100,7 +100,7 @@ def checked(function: F) -> F:
         try:
             return function(*args, **given)
         except ValueError as wrong:
-            if type(wrong) is not ValueError or _called_back(wrong, (*args, *given.values())):
+            if type(wrong) is not ValueError or theirs(wrong, (*args, *given.values())):
                 raise
             raise error(f"{place}: {wrong}") from wrong
 
