@@ -1,7 +1,5 @@
 """Numbers as people write them: rounded, a real minus sign, and digits enough for a comparison to read as it is."""
 
-from collections.abc import Sequence
-
 MOST = 17
 """With this many digits, two different numbers never read the same."""
 
@@ -24,12 +22,8 @@ def count_of(count: int, noun: str, plural: str = "") -> str:
     return f"{count} {noun if count == 1 else plural or f'{noun}s'}"
 
 
-def listed(names: Sequence[str], most: int = 3) -> str:
-    """The first few names, and how many more there are.
-
-    >>> listed(["a", "b"]), listed(["a", "b", "c", "d", "e"])
-    ('a, b', 'a, b, c and 2 more')
-    """
+def listed(names: list[str] | tuple[str, ...], most: int = 3) -> str:
+    """The first few names, and how many more there are."""
     return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
 
 

@@ -27,8 +27,6 @@ BAD_INPUT = 1
 REFUSED = 3
 INTERRUPTED = 130
 DEFAULT_RIG = "thenar"
-FORESEEN = 0.05
-"""Share of the steps from which on a bar says how long the rest takes: the first ones compile, and are uneven."""
 _QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
 _VERBOSE: ContextVar[bool] = ContextVar("verbose", default=False)
 
@@ -251,7 +249,7 @@ def progress_bar(what: str) -> Iterator[Progress | None]:
     with tqdm(desc=what, leave=False, file=sys.stderr, bar_format=early, ncols=size.columns, nrows=size.lines) as bar:
 
         def advance(done: int, total: int) -> None:
-            bar.total, bar.bar_format = total, early if done < FORESEEN * total else form
+            bar.total, bar.bar_format = total, early if done < 0.05 * total else form  # the first steps may compile
             bar.update(done - bar.n)
 
         yield advance

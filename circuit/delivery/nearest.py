@@ -1,7 +1,6 @@
 """The nearest cue that a rig can reach, for one that it cannot: the same shape slower, or smaller."""
 
 import math
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -18,8 +17,6 @@ from ..solver.simulate import simulate
 
 FARTHEST = 64.0
 """Factor by which a cue is slowed down, or made smaller, at most; assumed."""
-LONG_NUMBER = re.compile(r"(\.\d{3})\d+")
-"""Cut, not rounded: a change or rate is then on the side that is reached."""
 STEPS = 14
 """Bisections in the logarithm of the factor: ln 64 / 2^14 is below the three digits that are returned."""
 
@@ -93,20 +90,11 @@ def nearest_reachable(icon: Icon, rig: AnyRig = None) -> Nearest | None:
 
 def _lines(old: Icon, new: Icon) -> tuple[str, ...]:
     """The lines that differ, each once; none where an icon that is played has its lines elsewhere."""
-
-    def lines(icon: Icon) -> list[str]:
-        kept = (part for part in icon.statements if not isinstance(part, Total))
-        return "\n".join(statement_text(part, icon.context.control) for part in kept).splitlines()
-
     if any(all_played(old.statements)):
         return ()
-    pairs = zip(lines(old), lines(new), strict=True)
-    told = (f"{one.strip()} → {LONG_NUMBER.sub(_cut, other.strip())}" for one, other in pairs if one != other)
-    return tuple(dict.fromkeys(told))
-
-
-def _cut(number: re.Match[str]) -> str:
-    return number[1].rstrip("0").rstrip(".")
+    kept = ([part for part in icon.statements if not isinstance(part, Total)] for icon in (old, new))
+    texts = ("\n".join(statement_text(part, old.context.control) for part in parts).splitlines() for parts in kept)
+    return tuple(dict.fromkeys(f"{a.strip()} → {b.strip()}" for a, b in zip(*texts, strict=True) if a != b))
 
 
 def changed(icon: Icon, base_C: float, *, slower: float = 1.0, smaller: float = 1.0) -> Icon:
@@ -127,9 +115,11 @@ def changed(icon: Icon, base_C: float, *, slower: float = 1.0, smaller: float = 
         if not isinstance(statement, Ramp | Return | Wave | Step | Pulse):
             return statement
         by = factors if isinstance(statement, Step | Pulse) else factors | slowed
-        new = {name: by[name] * old for name in by if (old := getattr(statement, name, None)) is not None}
+        new = {
+            name: float(f"{by[name] * old:.6g}") for name in by if (old := getattr(statement, name, None)) is not None
+        }
         if (level := getattr(statement, "to_C", None)) is not None:
-            new["to_C"] = base_C + smaller * (level - base_C)
+            new["to_C"] = float(f"{base_C + smaller * (level - base_C):.6g}")
         return replace(statement, **new)
 
     return replace(icon, statements=all_of(icon.statements))

@@ -21,6 +21,7 @@ COLUMNS = (
     "q_max_W",
     "dt_max_K",
 )
+FIGURES = ("cm²", "J/K", "hot °C", "Imax A", "Vmax V", "Qmax W", "ΔTmax K")
 ONE_STAGE = 0.03
 """Share by which ΔTmax may miss the printed one: single-stage sheets come within 0.008, a two-stage one has 0.19."""
 LEAST_APART_K = 1.0
@@ -61,6 +62,16 @@ def build_of(name: str) -> Build:
     size, plate = printed.get("footprint_mm"), printed.get("plate_J_per_K")
     face = math.prod(float(side) for side in str(size).split("x")) / 100.0 if size else None
     return Build(face, float(plate) if plate else None, float(record.get("i_max_A")))
+
+
+def module_rows() -> list[tuple[str, ...]]:
+    """A row for each data sheet on record: the name, and `FIGURES`."""
+    rows = []
+    for record in module_table():
+        name, build = str(record.get("module")), build_of(str(record.get("module")))
+        known = [build.face_cm2, build.plate_J_per_K, *(float(record.get(key)) for key in COLUMNS[5:])]
+        rows.append((name, *("–" if each is None else f"{each:g}" for each in known)))
+    return sorted(rows)
 
 
 def load_module(name: str) -> tuple[Datasheet, ...]:

@@ -137,19 +137,17 @@ class Rig:
     def save(self, path: str | Path, name: str | None = None) -> None:
         """Write the rig as a `.toml` file, which `Rig.load` reads as an equal rig; an existing file is replaced.
 
-        `name` is that of the saved rig, which exports bear, whose title and [source] then say what was changed; None:
-        the rig's own. Raises RigError for another ending, a path that cannot be written, and a rig that no rig file may
-        describe.
+        `name` is that of the saved rig, which then says what was changed; None: the rig's own. Raises RigError for
+        another ending, a path that cannot be written, and a rig that no rig file may describe.
         """
         where = Path(path)
         if where.suffix != ".toml":
             raise RigError(f"{where}: the name of a rig file ends in .toml; call it {where.name}.toml")
         saved = self
         if name is not None:
-            document, keys = json.loads(self.document), changed(self.changes)
-            restate(document, keys)
-            document |= {"name": name, "title": f"{self.name} with other {', '.join(keys)}" if keys else self.title}
-            saved = _build(document, str(where))
+            document = json.loads(self.document)
+            restate(document, changed(self.changes))
+            saved = _build(document | {"name": name}, str(where))
         if _build(parse_toml(saved.toml, str(where)), str(where)) != saved:
             raise RigError(f"{where}: rig {self.name} cannot be read back unchanged; it was not saved")
         try:

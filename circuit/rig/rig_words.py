@@ -25,10 +25,6 @@ if TYPE_CHECKING:
 
 WIDTH = 118
 PLATE_KEYS = ("module.hot_plate_J_per_K", "module.cold_plate_J_per_K")
-PLATE_J_PER_K_PER_CM2 = 0.29
-"""Heat capacity of a plate for each cm² of face, as of all modules on record (`data/modules.toml`)."""
-FAR = 2.0
-"""A current limit of so many times a module's Imax is a slip, or wants a reason; up to it, more only cools less."""
 SAME_FACE = 0.01
 """Share by which a contact in cm² may differ from the face of a module by rounding alone."""
 PLATE_SHARE = 0.2
@@ -167,7 +163,7 @@ def _driver(rig: Rig) -> Iterator[Unusual]:
     module, limit = rig.module, driver.current_max_A
     figures = Extraction(module.seebeck_V_per_K, module.resistance_ohm, module.thermal_resistance_K_per_W, 0.0)
     imax_A = figures.greatest(rig.heat_sink.temperature_C)[1]
-    if limit > FAR * imax_A and "module.name" not in changed(rig.changes):
+    if limit > 2.0 * imax_A and "module.name" not in changed(rig.changes):
         yield unusual("far_past_imax", limit=limit, imax=imax_A, times=limit / imax_A)
 
 
@@ -180,8 +176,7 @@ def _module(rig: Rig) -> Iterator[Unusual]:
     build, area_cm2, keys = build_of(name), 1e4 * rig.contact.area_m2, " and ".join(PLATE_KEYS)
     hot, cold, replaced = rig.module.hot_plate_J_per_K, rig.module.cold_plate_J_per_K, stated.get("module.name") == name
     if replaced and build.plate_J_per_K is None and not set(PLATE_KEYS) <= set(stated):
-        about = {"area": area_cm2, "per": PLATE_J_PER_K_PER_CM2, "plate": PLATE_J_PER_K_PER_CM2 * area_cm2}
-        yield unusual("plates_unknown", name=name, hot=hot, cold=cold, keys=keys, **about)
+        yield unusual("plates_unknown", name=name, hot=hot, cold=cold, keys=keys)
     plate, known = build.plate_J_per_K, {*stated, *document.get("source", {})}
     own = [each for key, each in zip(PLATE_KEYS, (hot, cold), strict=True) if key not in known]
     if plate is not None and any(abs(each - plate) > PLATE_SHARE * plate for each in own):

@@ -93,16 +93,17 @@ def put(document: dict[str, Any], key: str, value: object) -> None:
 
 
 def restate(document: dict[str, Any], keys: Iterable[str]) -> None:
-    """Say in [source] which keys were set, beside what stands there of other keys of their table."""
+    """Say in title and [source] which keys were set, beside what stands there of other keys of their table."""
     said = document.setdefault("source", {})
     for key in keys:
-        parts = key.split(".")
-        if parts[:2] == ["skin", "layer"] and len(parts) > 2 and parts[2].isdecimal():
-            parts[2] = document["skin"]["layer"][int(parts[2])]["name"]
-        tables = (".".join(parts[:end]) for end in range(len(parts) - 1, 0, -1))
-        if table := next((each for each in tables if each in said), None):
-            said[table] += f"; {parts[-1]} is set by --set"
-        said[".".join(parts)] = "set by --set"
+        table, dot, name = key.rpartition(".")
+        if (place := table.removeprefix("skin.layer.")).isdecimal():
+            table = f"skin.layer.{document['skin']['layer'][int(place)]['name']}"
+        if table in said:
+            said[table] += f"; {name} is set by --set"
+        said[table + dot + name] = "set by --set"
+    if keys and "title" not in keys:
+        document["title"] = f"{document['name']} with other {', '.join(keys)}"
 
 
 def _check_display(document: Mapping[str, Any], part: str, key: str) -> None:

@@ -7,6 +7,7 @@ from functools import update_wrapper
 from importlib import import_module
 from numbers import Integral, Real
 from pathlib import Path
+from traceback import walk_tb
 from types import FunctionType, MappingProxyType, NoneType, UnionType
 from typing import Any, Literal, Self, TypeVar, Union, cast, get_args, get_origin, is_typeddict
 
@@ -79,7 +80,7 @@ def checked(function: F) -> F:
     if isinstance(function, type):
         setattr(function, "__init__", checked(vars(function)["__init__"]))  # noqa: B010
         return function
-    own, hints, error, theirs = cast(FunctionType, function), dict[str, Any](), InputError, _called_back
+    own, hints, error, walk = cast(FunctionType, function), dict[str, Any](), InputError, walk_tb
     place = own.__qualname__.removesuffix(".__init__")
     names = own.__code__.co_varnames[: own.__code__.co_argcount]
     rest = own.__code__.co_varnames[own.__code__.co_argcount + own.__code__.co_kwonlyargcount :][:1]
@@ -100,23 +101,14 @@ def checked(function: F) -> F:
         try:
             return function(*args, **given)
         except ValueError as wrong:
-            if type(wrong) is not ValueError or theirs(wrong, (*args, *given.values())):
-                raise
+            theirs = {getattr(each, "__code__", None) for each in (*args, *given.values())}
+            if type(wrong) is not ValueError or any(frame.f_code in theirs for frame, _ in walk(wrong.__traceback__)):
+                raise  # as a function raised it that was handed in
             raise error(f"{place}: {wrong}") from wrong
 
     # With the function's own globals: doctest looks by them for the examples of a module.
     made = FunctionType(call.__code__, own.__globals__, own.__name__, None, call.__closure__)
     return cast(F, update_wrapper(made, function))
-
-
-def _called_back(error: ValueError, given: Iterable[Any]) -> bool:
-    """Whether an error comes out of a function that was handed in, such as one that shows progress."""
-    from traceback import walk_tb
-
-    theirs = [
-        getattr(each, "__code__", getattr(type(each).__call__, "__code__", None)) for each in given if callable(each)
-    ]
-    return any(frame.f_code in theirs for frame, _ in walk_tb(error.__traceback__))
 
 
 class _Names(dict[str, Any]):

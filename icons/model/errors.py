@@ -55,10 +55,7 @@ class CueError:
         return str(codes()[self.code]["title"])
 
     def render(self, brief: bool = False) -> str:
-        """Return the error as people read it: place and code, the line with carets, help, and the corrected line.
-
-        `brief`: in three lines, one of many errors: without carets, and help only where there is no corrected line.
-        """
+        """Return the error as people read it, with place, line and cure; `brief`: one of several, in three lines."""
         if self.line == 0:
             rows = [f"{self.file}  {self.code} {self.title}", f"  {self.what}"]
         else:

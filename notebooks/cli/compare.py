@@ -90,8 +90,7 @@ def compare_command(
         pairs = [(each.title, each.both) for each in made]
         figure.write(compare_figure(pairs, across=figure.look.across(3)))
     if not any(differences(each.both)["largest"].any() for each in made):
-        shared = count_of(len(made), "icon") if kind == "set" else "any curve"
-        typer.echo(f"{first} and {second} play alike: no difference in {shared}")
+        typer.echo(f"{first} and {second} play alike: no difference in any curve")
         return
     show([block for each in made for block in compare_report(each)])
 

@@ -137,17 +137,10 @@ def show_rigs() -> None:
 
 def show_modules() -> None:
     """Print the modules on record, a line for each data sheet."""
-    from thermicon.circuit.rig.modules import build_of, module_table
+    from thermicon.circuit.rig.modules import FIGURES, module_rows
 
-    numbers = ("cm²", "J/K", "hot °C", "Imax A", "Vmax V", "Qmax W", "ΔTmax K")
-    rows = []
-    for record in module_table():
-        name, build = str(record.get("module")), build_of(str(record.get("module")))
-        known = [*("–" if each is None else f"{each:g}" for each in (build.face_cm2, build.plate_J_per_K))]
-        sheet = (f"{float(record.get(key)):g}" for key in ("t_hot_C", "i_max_A", "v_max_V", "q_max_W", "dt_max_K"))
-        rows.append((name, *known, *sheet))
     said = "cm² of face, J/K of each plate (–: not on record), hot side. To use one: --set module.name=NAME"
-    show([grid(("module", *numbers), sorted(rows), numbers), said])
+    show([grid(("module", *FIGURES), module_rows(), FIGURES), said])
 
 
 def show_icons() -> None:

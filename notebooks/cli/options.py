@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
-    from thermicon.perception import Goal, Ranking
+    from thermicon.perception import Ranking
     from thermicon.perception.observer.observer_model import ObserverModel
 
 MOST_PEOPLE, MOST_DRAWS, LARGEST_SEED = 100_000, 10_000, 2**32 - 1
@@ -101,18 +101,9 @@ def commands(files: Sequence[str], rig: Options, crowd: Options) -> Callable[...
 Goals = Annotated[
     list[str] | None,
     opt(
-        "TEXT",
-        'What is wanted, such as "90 % correct for 95 % of people, time <= 10 s, safety green"; may be repeated.',
-        name="--goal",
+        "TEXT", 'What is wanted, such as "90 % correct for 95 % of people, time <= 10 s, safety green".', name="--goal"
     ),
 ]
-
-
-def goal_of(texts: list[str] | None) -> Goal | None:
-    """The goal with the parts of all texts; None without one."""
-    from thermicon.perception import Goal
-
-    return Goal.parse(", ".join(texts)) if texts else None
 
 
 class Options:
@@ -274,8 +265,9 @@ def read_set(files: Sequence[str]) -> IconSet:
     owner: dict[str, str] = {}
     for file, each in zip(files, sets, strict=True) if len(sets) > 1 else ():
         if each.context != joined.context:
-            pairs = zip(_context_words(each), _context_words(joined), strict=True)
-            told = ", ".join(f"{one}, not {other}" for one, other in pairs if one != other)
+            keys = ("site", "control", "baseline_C")
+            both = [(key.removesuffix("_C"), getattr(each.context, key), getattr(joined.context, key)) for key in keys]
+            told = ", ".join(f"{key} {one}, not {other}" for key, one, other in both if one != other)
             raise JoinError(
                 f"{file} has {told} as in {files[0]}, and one set has these in common: put the icons into one file, "
                 "or take each file by itself"
@@ -294,16 +286,6 @@ def read_set(files: Sequence[str]) -> IconSet:
     return joined
 
 
-def _context_words(icons: IconSet) -> tuple[str, ...]:
-    """What a set says of where and what it plays."""
-    site, control, baseline_C = icons.context.site, icons.context.control, icons.context.baseline_C
-    return (
-        f"site {site or 'none'}",
-        f"control {control}",
-        f"baseline {'none' if baseline_C is None else f'{baseline_C:g} °C'}",
-    )
-
-
 def theirs_of(columns: Sequence[str] | None) -> dict[str, str]:
     """What a table calls our columns, by ``--column NAME=THEIRS``."""
     pairs = [column.partition("=") for column in columns or []]
@@ -316,15 +298,13 @@ def site_warnings(file: str, icons: IconSet | Icon, rig: Rig) -> tuple[str, ...]
     """Warnings of a set for another site than the rig's."""
     if icons.context.site in (None, rig.site):
         return ()
-    meant = site_meant(icons.context.site)
-    return (f"{file} is for the site {icons.context.site}, the rig {rig.name} is for {rig.site}{meant}",)
+    site = icons.context.site
+    return (f"{file} is for the site {site}, the rig {rig.name} is for {rig.site}{site_meant(site)}",)
 
 
 def site_meant(site: str | None) -> str:
     """Which site of a shipped rig is meant by one that no rig has; empty where none is alike."""
-    known = {
-        each.name.removesuffix(".toml") for each in resources.files("thermicon.circuit").joinpath("rigs").iterdir()
-    }
+    known = [each.name.split(".")[0] for each in (resources.files("thermicon.circuit") / "rigs").iterdir()]
     near = [] if site is None or site in known else nearest_words(site.lower(), known, cutoff=0.75)
     return f"; did you mean site {near[0]}?" if near else ""
 

@@ -29,7 +29,6 @@ from .options import (
     command_text,
     commands,
     flag,
-    goal_of,
     opt,
     out,
     read_set,
@@ -132,6 +131,8 @@ def rank_command(
     with many draws of the posterior (--people 24 is enough) as new laboratories would see it, and the table says which
     constants their differences come from.
     """
+    from thermicon.perception import Goal
+
     if report is not None:
         check_output(report, (".html", ".htm"), "a report")
         if report == STDOUT:
@@ -144,7 +145,7 @@ def rank_command(
         raise usage("is about predictions for people: leave out --by rules", "--doubt" if doubt else "--report")
     if goal and crowd.memory == "rules":
         raise usage("is about predictions for people: leave out --by rules", "--goal")
-    wanted = goal_of(goal)
+    wanted = Goal.parse(", ".join(goal)) if goal else None
     if doubt:
         given = {"--task": task.task, "--goal": goal, "--report": report, "--workers": workers, "--details": details}
         for option, value in {**given, "--tracking": crowd.tracking}.items():

@@ -63,9 +63,8 @@ def study_command(
     note(f"wrote {len(files)} files into {folder}")
     note(CAUTION)
     if materials.study.stimuli.set is not None:
-        asked = materials.study.stimuli
-        rig = RigOptions(asked.rig, list(asked.rig_changes) or None)
-        command = command_text([str(asked.set)], rig, paths=True, command="pilot")
+        rig = RigOptions(materials.study.stimuli.rig, materials.study.stimuli.rig_changes or None)
+        command = command_text([materials.study.stimuli.set], rig, paths=True, command="pilot")
         note(f"Next, with the answers: {command} --answers FILE.csv")
 
 

@@ -70,17 +70,16 @@ def choice_lines(choice: Choice) -> Iterator[str]:
 
 
 def left_out(excluded: Sequence[tuple[str, str]]) -> Iterator[str]:
-    """One line for the icons that were left out for reasons of one kind, with that of the first.
+    """A line for the icons that were left out for reasons of one kind, with that of the first.
 
-    >>> list(left_out([("a", "is detected in 4 % of trials only"), ("b", "is detected in 9 % of trials only")]))
-    ['Left out: a, b: a is detected in 4 % of trials only']
+    >>> list(left_out([(name, "is detected in 4 % of trials only") for name in "abcde"]))
+    ['Left out: a, b, c and 2 more: a is detected in 4 % of trials only']
     """
     kinds: dict[str, list[str]] = {}
     for name, reason in excluded:
         kinds.setdefault(" ".join(reason.split()[:3]), []).append(name)
     for names in kinds.values():
-        first = f"{names[0]} {dict(excluded)[names[0]]}"
-        yield f"Left out: {f'{listed(names)}: ' if len(names) > 1 else ''}{first}"
+        yield f"Left out: {f'{listed(names)}: ' * (len(names) > 1)}{names[0]} {dict(excluded)[names[0]]}"
 
 
 def scored(objective: str, value: float) -> str:

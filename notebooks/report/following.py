@@ -22,10 +22,7 @@ OF_ICONS = ("detected", "onset")
 
 
 def after_ranking(found: SetReport, command: Command, cures: Mapping[str, str] | None = None) -> str:
-    """The command for what is in the way of a set: its play, its detection, its confusions; otherwise the export.
-
-    `cures` say by name how icons that are not reached could be.
-    """
+    """The command for what is in the way of a set: its play (with `cures`), detection, confusions; else the export."""
     from thermicon.perception.criteria import FELT_FROM
 
     missed = [] if found.goal is None else [each.part.quantity for each in found.goal.parts if not each.met]
@@ -50,11 +47,10 @@ def after_ranking(found: SetReport, command: Command, cures: Mapping[str, str] |
 
 def after_simulating(cured: Sequence[str], lost: Sequence[str], command: Command) -> str:
     """To rank what is played as written; otherwise to change the icons that have a cure, or are lost."""
-    if cured:
-        return f"change the lines of {listed(cured)} as said above, then {command('rank')}"
-    if lost:
-        return f"write {listed(lost)} slower, smaller or shorter, then {command('rank')}"
-    return command("rank")
+    if not lost:
+        return command("rank")
+    way = f"change the lines of {listed(cured)} as said above" if cured else f"write {listed(lost)} slower or smaller"
+    return f"{way}, then {command('rank')}"
 
 
 def after_choices(found: Frontier, command: Command, written: str | None) -> str:

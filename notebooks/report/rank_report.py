@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
 MOST_ROWS = 5
 """Icons in the table of a ranking without details, which then has about twenty lines at 80 columns."""
-MOST_CURES = 3
-"""Icons that are not reached, whose lines to change are shown without details."""
 BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
 MOST_CONSTANTS = 12
@@ -49,7 +47,7 @@ def rank_report(
     ranking, icons = made.ranking, made.ranking.best_first
     notes = [Text(line, "warn") for line in trouble_lines(ranking.icons, cures or {})]
     notes += [Text(line, "note") for line in outside_lines(icons)]
-    shown = max(1, min(len(cures or {}), MOST_CURES))
+    shown = max(1, min(len(cures or {}), 3))
     if not details and len(notes) > shown:
         more = count_of(len(notes) - shown, "more note")
         notes = [*notes[:shown], Text(f"{more}: thermicon rank --details", "warn")]
@@ -128,8 +126,8 @@ def cards(made: SetReport) -> tuple[tuple[str, str], ...]:
     else:
         share, information, d_prime = ranking.proportion_correct, ranking.information_bits, worst.d_prime
         fine = {icon.name for icon in icons if icon.playable}
-        which = "worst pair that can be played" if {worst.a, worst.b} <= fine < {*ranking.labels} else "worst pair"
-        pair = f"{which}: {worst.a} and {worst.b}, confused in {percent(worst.confused_probability)}"
+        those = " that can be played" if {worst.a, worst.b} <= fine < {*ranking.labels} else ""
+        pair = f"worst pair{those}: {worst.a} and {worst.b}, confused in {percent(worst.confused_probability)}"
     if elsewhere is not None:
         within, ends = f"in {laboratory(ranking)} (95 %)", (elsewhere.proportion_correct, elsewhere.information_bits)
     else:

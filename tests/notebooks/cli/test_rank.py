@@ -109,7 +109,7 @@ def test_files_are_joined_into_one_set(cli: Cli, two: Path, tmp_path: Path) -> N
     more.write_text(more.read_text(encoding="utf-8").replace("32", "33"), encoding="utf-8")
     said = cli("rank", two, more)
     assert said.exit_code == 1
-    assert "more.cue has baseline 33 °C, not baseline 32 °C as in" in said.stderr
+    assert "more.cue has baseline 33.0, not 32.0 as in" in said.stderr
 
 
 def test_an_icon_that_is_not_reached_is_in_the_way_and_says_its_lines_to_change(cli: Cli, tmp_path: Path) -> None:
