@@ -22,6 +22,11 @@ def count_of(count: int, noun: str, plural: str = "") -> str:
     return f"{count} {noun if count == 1 else plural or f'{noun}s'}"
 
 
+def listed(names: list[str] | tuple[str, ...], most: int = 3) -> str:
+    """The first few names, and how many more there are."""
+    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
+
+
 def number(value: float, digits: int = 1) -> str:
     """Round to ``digits`` decimals, drop trailing zeros, and use a real minus sign.
 

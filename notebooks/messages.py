@@ -252,12 +252,12 @@ def progress_bar(what: str, then: str = "") -> Iterator[Progress | None]:
         return
     from tqdm import tqdm
 
-    form = "{desc}: {bar} {n_fmt}/{total_fmt}, {remaining} left"
+    form, early = "{desc}: {bar} {n_fmt}/{total_fmt}, {remaining} left", "{desc}: {bar} {n_fmt}/{total_fmt}, ? left"
     size = get_terminal_size()  # 80 by 24 where a terminal does not say how large it is, and has no room for a bar
-    with tqdm(desc=what, leave=False, file=sys.stderr, bar_format=form, ncols=size.columns, nrows=size.lines) as bar:
+    with tqdm(desc=what, leave=False, file=sys.stderr, bar_format=early, ncols=size.columns, nrows=size.lines) as bar:
 
         def advance(done: int, total: int) -> None:
-            bar.total = total
+            bar.total, bar.bar_format = total, early if done < 0.05 * total else form  # the first steps may compile
             bar.update(done - bar.n)
 
         yield advance

@@ -105,6 +105,15 @@ def test_the_error_names_the_argument_and_what_it_takes(call: str, words: str) -
         eval(call, globals() | names)
 
 
+def test_an_error_of_a_function_that_is_handed_in_is_not_ours() -> None:
+    def progress(done: int, total: int) -> None:
+        raise ValueError("mine")
+
+    with pytest.raises(ValueError, match=r"^mine$") as told:
+        rank("six-icons", people=2, parameters=0, progress=progress)
+    assert type(told.value) is ValueError
+
+
 def test_a_crowd_and_its_words_are_the_same_people() -> None:
     crowd = Crowd(people=3, memory="naming")
     assert rank("six-icons", crowd=crowd, people=2, parameters=0) != ranked()

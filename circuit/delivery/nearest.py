@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 
 from thermicon.icons import Icon
 from thermicon.icons.model.arguments import checked
+from thermicon.icons.model.format import statement_text
+from thermicon.icons.model.icon import all_played
 from thermicon.icons.model.statements import Broken, Play, Pulse, Ramp, Repeat, Return, Statement, Step, Total, Wave
 
 from ..rig.rig import AnyRig, Rig
@@ -21,21 +23,24 @@ STEPS = 14
 
 @dataclass(frozen=True, slots=True)
 class Nearest:
-    """A reachable cue, its ramps `slower` times as slow or its changes `smaller` times as large."""
+    """A reachable cue, its ramps `slower` times as slow or its changes `smaller` times as large; `lines`: old → new."""
 
     icon: Icon
     slower: float
     smaller: float
+    lines: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return f"Nearest({self.icon.name!r}: {self.sentence})"
 
     @property
     def sentence(self) -> str:
-        """What to change, in one sentence."""
+        """What to change, in one sentence with the lines."""
         if self.slower > 1:
-            return f"it is reached with its ramps {self.slower:.3g} times as slow"
-        return f"it is reached with its changes {self.smaller:.3g} times as large, in the same time"
+            how = f"ramps {self.slower:.3g} times as slow"
+        else:
+            how = f"changes {self.smaller:.3g} times as large, in the same time"
+        return f"it is reached with its {how}{': ' if self.lines else ''}{'; '.join(self.lines)}"
 
 
 @checked
@@ -64,7 +69,7 @@ def nearest_reachable(icon: Icon, rig: AnyRig = None) -> Nearest | None:
     >>> from thermicon.icons import load_library
     >>> cue = load_library("cooling-step-skin").icons[0]
     >>> nearest_reachable(cue, Rig.load("thenar").with_(**{"driver.current_limit_A": 1.0})).sentence
-    'it is reached with its changes 0.8 times as large, in the same time'
+    'it is reached with its changes 0.8 times as large, in the same time: cool by 8 °C at 4 °C/s → ...'
     """
     on = Rig.of(rig, icon.context.site)
     if icon.context.control == "current" or _reached(icon, on):
@@ -76,9 +81,20 @@ def nearest_reachable(icon: Icon, rig: AnyRig = None) -> Nearest | None:
         return None
     if smaller is None or (slower is not None and slower <= smaller):
         assert slower is not None
-        return Nearest(changed(icon, base, slower=slower), slower, 1.0)
+        found = changed(icon, base, slower=slower)
+        return Nearest(found, slower, 1.0, _lines(icon, found))
     least = _three_digits(1.0 / smaller, math.floor)  # never rounded towards what is not reached
-    return Nearest(changed(icon, base, smaller=least), 1.0, least)
+    found = changed(icon, base, smaller=least)
+    return Nearest(found, 1.0, least, _lines(icon, found))
+
+
+def _lines(old: Icon, new: Icon) -> tuple[str, ...]:
+    """The lines that differ, each once; none where an icon that is played has its lines elsewhere."""
+    if any(all_played(old.statements)):
+        return ()
+    kept = ([part for part in icon.statements if not isinstance(part, Total)] for icon in (old, new))
+    texts = ("\n".join(statement_text(part, old.context.control) for part in parts).splitlines() for parts in kept)
+    return tuple(dict.fromkeys(f"{a.strip()} → {b.strip()}" for a, b in zip(*texts, strict=True) if a != b))
 
 
 def changed(icon: Icon, base_C: float, *, slower: float = 1.0, smaller: float = 1.0) -> Icon:
@@ -99,9 +115,11 @@ def changed(icon: Icon, base_C: float, *, slower: float = 1.0, smaller: float = 
         if not isinstance(statement, Ramp | Return | Wave | Step | Pulse):
             return statement
         by = factors if isinstance(statement, Step | Pulse) else factors | slowed
-        new = {name: by[name] * old for name in by if (old := getattr(statement, name, None)) is not None}
+        new = {
+            name: float(f"{by[name] * old:.6g}") for name in by if (old := getattr(statement, name, None)) is not None
+        }
         if (level := getattr(statement, "to_C", None)) is not None:
-            new["to_C"] = base_C + smaller * (level - base_C)
+            new["to_C"] = float(f"{base_C + smaller * (level - base_C):.6g}")
         return replace(statement, **new)
 
     return replace(icon, statements=all_of(icon.statements))

@@ -4,8 +4,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from thermicon.icons.near_words import did_you_mean
-
 from ..records import Record, RecordError, RecordTable, shipped_records
 from .faults import PARAMETERS, Unusual, sentence, unusual
 from .module import Datasheet, Extraction, Peltier, at_mean_C
@@ -23,6 +21,7 @@ COLUMNS = (
     "q_max_W",
     "dt_max_K",
 )
+FIGURES = ("cm²", "J/K", "hot °C", "Imax A", "Vmax V", "Qmax W", "ΔTmax K")
 ONE_STAGE = 0.03
 """Share by which ΔTmax may miss the printed one: single-stage sheets come within 0.008, a two-stage one has 0.19."""
 LEAST_APART_K = 1.0
@@ -57,7 +56,7 @@ class Build:
 
 
 def build_of(name: str) -> Build:
-    """Return the build of a shipped module; raises RecordError with the nearest name."""
+    """Return the build of a shipped module; raises RecordError that names all."""
     record = _records(name)[0]
     printed = dict(record.extra)
     size, plate = printed.get("footprint_mm"), printed.get("plate_J_per_K")
@@ -65,8 +64,18 @@ def build_of(name: str) -> Build:
     return Build(face, float(plate) if plate else None, float(record.get("i_max_A")))
 
 
+def module_rows() -> list[tuple[str, ...]]:
+    """A row for each data sheet on record: the name, and `FIGURES`."""
+    rows = []
+    for record in module_table():
+        name, build = str(record.get("module")), build_of(str(record.get("module")))
+        known = [build.face_cm2, build.plate_J_per_K, *(float(record.get(key)) for key in COLUMNS[5:])]
+        rows.append((name, *("–" if each is None else f"{each:g}" for each in known)))
+    return sorted(rows)
+
+
 def load_module(name: str) -> tuple[Datasheet, ...]:
-    """Return the data sheets of a shipped module, coolest hot side first; raises RecordError with the nearest name."""
+    """Return the data sheets of a shipped module, coolest hot side first; raises RecordError that names all."""
     sheets = [
         Datasheet.model_validate({key: record.get(key) for key in Datasheet.model_fields}) for record in _records(name)
     ]
@@ -75,7 +84,7 @@ def load_module(name: str) -> tuple[Datasheet, ...]:
 
 def _records(name: str) -> list[Record]:
     if name not in module_names():
-        raise RecordError(f"{name}: no such module; {did_you_mean(name, module_names())}")
+        raise RecordError(f"{name}: no such module; known: {', '.join(module_names())} (thermicon list modules)")
     return [record for record in module_table() if record.get("module") == name]
 
 

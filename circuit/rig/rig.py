@@ -23,7 +23,7 @@ from .parts import Contact, Driver, HeatSink, Probe
 from .rig_words import rig_summary, rig_warnings
 from .rigfile import Ambient, Controller, RigError, RigTable, Thermode, parse_toml, read_table
 from .rules import Limits
-from .settings import changed, flattened, put_all, read_settings, toml_text
+from .settings import changed, flattened, put_all, read_settings, restate, toml_text
 from .skin import Skin, SkinColumn, column_of
 from .uncertainty import Uncertainty
 
@@ -137,13 +137,17 @@ class Rig:
     def save(self, path: str | Path, name: str | None = None) -> None:
         """Write the rig as a `.toml` file, which `Rig.load` reads as an equal rig; an existing file is replaced.
 
-        `name` is that of the saved rig, which exports bear; None: the rig's own. Raises RigError for another ending, a
-        path that cannot be written, and a rig that no rig file may describe.
+        `name` is that of the saved rig, which then says what was changed; None: the rig's own. Raises RigError for
+        another ending, a path that cannot be written, and a rig that no rig file may describe.
         """
         where = Path(path)
         if where.suffix != ".toml":
             raise RigError(f"{where}: the name of a rig file ends in .toml; call it {where.name}.toml")
-        saved = self if name is None else self.with_(name=name)
+        saved = self
+        if name is not None:
+            document = json.loads(self.document)
+            restate(document, changed(self.changes))
+            saved = _build(document | {"name": name}, str(where))
         if _build(parse_toml(saved.toml, str(where)), str(where)) != saved:
             raise RigError(f"{where}: rig {self.name} cannot be read back unchanged; it was not saved")
         try:

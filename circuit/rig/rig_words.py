@@ -12,6 +12,7 @@ from thermicon.icons.number_text import signed
 
 from ..records import shipped_records
 from .faults import Unusual, unit_of, unusual
+from .module import Extraction
 from .modules import build_of, module_names
 from .rigfile import Thermode
 from .settings import changed
@@ -158,6 +159,12 @@ def _driver(rig: Rig) -> Iterator[Unusual]:
     if stored < least_s * through:
         numbers = {"lag": 1e3 * stored / through, "least": 1e3 * least_s, "enough": 1.05 * least_s * through}
         yield unusual("fast_plate", stored=stored, rate=1.05 * STEPS * through / stored, **numbers)
+
+    module, limit = rig.module, driver.current_max_A
+    figures = Extraction(module.seebeck_V_per_K, module.resistance_ohm, module.thermal_resistance_K_per_W, 0.0)
+    imax_A = figures.greatest(rig.heat_sink.temperature_C)[1]
+    if limit > 2.0 * imax_A and "module.name" not in changed(rig.changes):
+        yield unusual("far_past_imax", limit=limit, imax=imax_A, times=limit / imax_A)
 
 
 def _module(rig: Rig) -> Iterator[Unusual]:

@@ -92,6 +92,20 @@ def put(document: dict[str, Any], key: str, value: object) -> None:
         place[parts[-1]] = value
 
 
+def restate(document: dict[str, Any], keys: Iterable[str]) -> None:
+    """Say in title and [source] which keys were set, beside what stands there of other keys of their table."""
+    said = document.setdefault("source", {})
+    for key in keys:
+        table, dot, name = key.rpartition(".")
+        if (place := table.removeprefix("skin.layer.")).isdecimal():
+            table = f"skin.layer.{document['skin']['layer'][int(place)]['name']}"
+        if table in said:
+            said[table] += f"; {name} is set by --set"
+        said[table + dot + name] = "set by --set"
+    if keys and "title" not in keys:
+        document["title"] = f"{document['name']} with other {', '.join(keys)}"
+
+
 def _check_display(document: Mapping[str, Any], part: str, key: str) -> None:
     """Refuse a key of a module on a thermode rig, and a key of a thermode on a rig with a module."""
     if "thermode" in document and part in ("module", "heat_sink", "driver", "controller"):

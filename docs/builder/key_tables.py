@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from table_text import markdown
 
 from thermicon.circuit.delivery.devicefile import DeviceTable, quantities, units_of
-from thermicon.circuit.rig.modules import build_of, module_table
+from thermicon.circuit.rig.modules import FIGURES, module_rows
 from thermicon.circuit.rig.rigfile import RigTable
 from thermicon.notebooks.study.study_file import TABLES as STUDY_TABLES
 from thermicon.notebooks.study.study_file import Study
@@ -27,15 +27,8 @@ def rig_keys_table() -> str:
 
 def modules_table() -> str:
     """The modules on record, a line for each data sheet."""
-    rows = []
-    for record in sorted(module_table(), key=lambda record: (str(record.get("module")), float(record.get("t_hot_C")))):
-        printed, name = dict(record.extra), str(record.get("module"))
-        size = str(printed["footprint_mm"]).replace("x", "×") + " mm" if printed.get("footprint_mm") else "–"
-        plate = build_of(name).plate_J_per_K
-        figures = [f"{float(record.get(key)):g}" for key in ("t_hot_C", "i_max_A", "v_max_V", "q_max_W", "dt_max_K")]
-        rows.append((f"`{name}`", size, "–" if plate is None else f"{plate:g}", *figures))
-    head = ("name", "face", "plates, J/K each", "hot side °C", "Imax A", "Vmax V", "Qmax W", "ΔTmax K")
-    return markdown(head, rows)
+    rows = [(f"`{name}`", *figures) for name, *figures in module_rows()]
+    return markdown(("name", "face cm²", "plates, J/K each", "hot side °C", *FIGURES[3:]), rows)
 
 
 def device_keys_table() -> str:

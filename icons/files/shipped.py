@@ -173,13 +173,14 @@ def library_names() -> tuple[str, ...]:
 
 
 def beside(path: str | Path, ending: str = "") -> str:
-    """A file of the same folder and ending with a similar name, which may have been meant; empty without one."""
+    """A file of the same folder with a similar name and ending, which may have been meant; empty without one."""
     wanted = Path(path)
     try:
         there = [each for each in islice(wanted.parent.iterdir(), MOST_LOOKED_AT) if not each.name.startswith(".")]
     except (OSError, ValueError):
         return ""
-    alike = [each for each in there if each.suffix == (wanted.suffix or ending or each.suffix)]
+    suffix = wanted.suffix or ending
+    alike = [each for each in there if not suffix or nearest_words(suffix, [each.suffix], cutoff=0.7)]
     names = {each.name if wanted.suffix else each.stem: each.name for each in alike}
     close = nearest_words(wanted.name, names, cutoff=0.7)
     return str(wanted.with_name(names[close[0]])) if close else ""

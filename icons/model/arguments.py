@@ -7,6 +7,7 @@ from functools import update_wrapper
 from importlib import import_module
 from numbers import Integral, Real
 from pathlib import Path
+from traceback import walk_tb
 from types import FunctionType, MappingProxyType, NoneType, UnionType
 from typing import Any, Literal, Self, TypeVar, Union, cast, get_args, get_origin, is_typeddict
 
@@ -79,7 +80,7 @@ def checked(function: F) -> F:
     if isinstance(function, type):
         setattr(function, "__init__", checked(vars(function)["__init__"]))  # noqa: B010
         return function
-    own, hints, error = cast(FunctionType, function), dict[str, Any](), InputError
+    own, hints, error, walk = cast(FunctionType, function), dict[str, Any](), InputError, walk_tb
     place = own.__qualname__.removesuffix(".__init__")
     names = own.__code__.co_varnames[: own.__code__.co_argcount]
     rest = own.__code__.co_varnames[own.__code__.co_argcount + own.__code__.co_kwonlyargcount :][:1]
@@ -100,8 +101,9 @@ def checked(function: F) -> F:
         try:
             return function(*args, **given)
         except ValueError as wrong:
-            if type(wrong) is not ValueError:
-                raise
+            theirs = {getattr(each, "__code__", None) for each in (*args, *given.values())}
+            if type(wrong) is not ValueError or any(frame.f_code in theirs for frame, _ in walk(wrong.__traceback__)):
+                raise  # as a function raised it that was handed in
             raise error(f"{place}: {wrong}") from wrong
 
     # With the function's own globals: doctest looks by them for the examples of a module.

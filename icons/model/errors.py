@@ -54,8 +54,8 @@ class CueError:
         """The short name that belongs to the code."""
         return str(codes()[self.code]["title"])
 
-    def render(self) -> str:
-        """Return the error as people read it: place and code, the line with carets, help, and the corrected line."""
+    def render(self, brief: bool = False) -> str:
+        """Return the error as people read it, with place, line and cure; `brief`: one of several, in three lines."""
         if self.line == 0:
             rows = [f"{self.file}  {self.code} {self.title}", f"  {self.what}"]
         else:
@@ -65,11 +65,11 @@ class CueError:
             pad = "".join("\t" if char == "\t" else " " * _width(char) for char in before)
             carets = "^" * max(1, sum(_width(char) for char in shown))
             rows = [
-                f"{self.file}:{self.line}:{self.column}  {self.code} {self.title}",
+                f"{self.file}:{self.line}:{self.column}  {self.code} {self.title}{f': {self.what}' * brief}",
                 f"  {self.line} | {''.join(text)}",
-                f"  {gutter} | {pad}{carets} {self.what}",
+                *[f"  {gutter} | {pad}{carets} {self.what}"] * (not brief),
             ]
-        if self.help:
+        if self.help and not (brief and self.suggestion):
             rows.append(f"  {self.help}")
         if self.suggestion is not None:
             rows.append(f"  did you mean:  {self.suggestion}")
@@ -88,7 +88,7 @@ class CueErrors(InputError):
 
     Notes
     -----
-    ``str()`` renders every error, separated by empty lines.
+    ``str()`` renders one error at length, several in up to three lines each.
 
     Examples
     --------
@@ -108,11 +108,11 @@ class CueErrors(InputError):
     @property
     def text(self) -> str:
         """Every error, one below the other."""
-        parts = [error.render() for error in self.errors]
+        parts = [error.render(brief=len(self.errors) > 1) for error in self.errors]
         if self.more:
             least = "at least " if self.more + len(self.errors) >= MOST_READ else ""
             parts.append(f"... and {least}{count_of(self.more, 'more error')}")
-        return "\n\n".join(parts)
+        return "\n".join(parts)
 
     def _render_traceback_(self) -> list[str]:
         return str(self).split("\n")

@@ -14,7 +14,7 @@ from thermicon.icons.number_text import number, span
 
 from ..files.outputs import check_output
 from ..messages import MissingArgument, fail, note, usage
-from .options import flag, opt
+from .options import MOST_ICONS, command_text, flag, opt, site_meant
 
 if TYPE_CHECKING:
     from thermicon.icons import IconSet
@@ -103,12 +103,16 @@ def check(files: Sequence[str]) -> None:
             icons = read_cue(file)
             # Families expand lazily, so an icon's own errors may show only here.
             lines.append(f"{Path(file).name}: {summary(icons)}")
+            if meant := site_meant(icons.context.site):
+                note(f"warning: {file}: no rig is for the site {icons.context.site}{meant}")
         except CueErrors as errors:
             problems.append(str(errors))
     if problems:
         fail("\n\n".join(problems))
     for line in lines:
         typer.echo(line)
+    if len(files) == 1:
+        note(f"Next: {command_text(files, paths=True, command='rank' if 1 < len(icons) <= MOST_ICONS else 'simulate')}")
 
 
 def summary(icons: IconSet) -> str:

@@ -13,7 +13,7 @@ from thermicon.icons.number_text import count_of, number
 from thermicon.perception.criteria import MOST_ICONS
 
 from ..files.outputs import check_separate
-from ..files.trace_files import Curves, TraceFileError, align, curves_of, quantity, read_curves
+from ..files.trace_files import Curves, TraceFileError, align, curves_of, differences, quantity, read_curves
 from ..messages import load_rig, note, progress_bar, usage
 from ..report.run_report import Comparison, compare_report, outcome_text
 from ..report.sets_report import sets_report
@@ -89,6 +89,9 @@ def compare_command(
 
         pairs = [(each.title, each.both) for each in made]
         figure.write(compare_figure(pairs, across=figure.look.across(3)))
+    if not any(differences(each.both)["largest"].any() for each in made):
+        typer.echo(f"{first} and {second} play alike: no difference in any curve")
+        return
     show([block for each in made for block in compare_report(each)])
 
 

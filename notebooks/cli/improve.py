@@ -91,7 +91,7 @@ def improve_command(
     from thermicon.icons import Family
     from thermicon.perception import Goal
 
-    wanted = None if goal is None else Goal.parse(goal)
+    wanted = Goal.parse(", ".join(goal)) if goal else None
     icons = read_set(files)
     has_families = any(isinstance(entry, Family) for entry in icons.entries)
     as_they_are = choose is not None or up_to is not None or edits
@@ -143,9 +143,10 @@ def improve_command(
             told = beside_start(found, icons, where, how, command, written, figure)
     else:
         made = chosen(icons, where, choose, what, must, edits, how)
+        missed = ", which misses the goal" if made.goal is not None and not made.goal.met else ""
         for path in outputs:
             if path.suffix == ".cue" and made.choice is not None:
-                write_text(str(_written(icons, made.choice.icons, where)), path)
+                write_text(str(_written(icons, made.choice.icons, where)), path, missed)
             else:
                 write_text(made.to_json() + "\n", path)
         if figure.figure is not None:

@@ -1,5 +1,6 @@
 """``thermicon list``: shipped sets, rigs or records, with citations or copies to start from."""
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Literal
@@ -19,8 +20,10 @@ from .options import CrowdOptions, RigOptions, flag, opt, read_set, write_text
 def list_command(
     rig: RigOptions,
     what: Annotated[
-        Literal["icons", "rigs", "devices", "formats"] | None,
-        typer.Argument(metavar="icons|rigs|devices|formats", show_default=False, help="What to list.  [default: all]"),
+        Literal["icons", "rigs", "modules", "devices", "formats"] | None,
+        typer.Argument(
+            metavar="icons|rigs|modules|devices|formats", show_default=False, help="What to list.  [default: all]"
+        ),
     ] = None,
     cite: Annotated[
         str | None,
@@ -36,7 +39,7 @@ def list_command(
         ),
     ] = None,
 ) -> None:
-    """List shipped icon sets, rigs, devices and file formats of drives; cite them, or copy one to start from."""
+    """List shipped icon sets, rigs, modules, devices and formats of drives; cite them, or copy one to start from."""
     if rig.rig and cite is None:
         raise usage("applies to the paragraph of --cite", "--rig")
     if rig.set and cite is None and copy is None:
@@ -50,7 +53,8 @@ def list_command(
     elif copy is not None:
         copy_shipped(*copy, rig.changes)
     else:
-        shown = {"icons": show_icons, "rigs": show_rigs, "devices": show_devices, "formats": show_formats}
+        shown = {"icons": show_icons, "rigs": show_rigs, "modules": show_modules, "devices": show_devices,
+                 "formats": show_formats}  # fmt: skip
         for place, each in enumerate([what] if what else shown):
             if place:
                 typer.echo("")
@@ -85,27 +89,28 @@ def copy_shipped(name: str, output: Path, changes: Sequence[str] = ()) -> None:
 
     from ..study.study_file import SHIPPED
 
+    own = shlex.quote(str(output))
     kinds = (
-        (library_names(), "icons", "library", "{}.cue"),
-        (rig_names(), "circuit", "rigs", "{}.toml"),
-        (device_names(), "circuit", "devices", "{}.toml"),
-        (("study", "example"), "notebooks", "data", SHIPPED),
-    )
-    for names, package, folder, file in kinds:
+        (library_names(), "icons", "library", "{}.cue", f"thermicon rank {own}"),
+        (rig_names(), "circuit", "rigs", "{}.toml", f"thermicon rank six-icons --rig {own}"),
+        (device_names(), "circuit", "devices", "{}.toml", f"thermicon export SET --device {own} --to FORMAT -o drives"),
+        (("study", "example"), "notebooks", "data", SHIPPED,
+         f"write your set, rig and device into {own}, then thermicon study {own} -o study"),
+    )  # fmt: skip
+    for names, package, folder, file, following in kinds:
         if name in names:
             check_output(output, (Path(file).suffix,), f"a copy of {name}")
             if output.exists():
                 raise OutputError(f"{output} already exists and was kept; give another name")
             if changes and folder != "rigs":
-                raise usage(f"changes keys of a rig, and {name} is none", "--set")
+                raise usage(f"changes keys of a rig, and {name} is none: change the copy with a text editor", "--set")
             if changes:
                 load_rig(name, changes).save(output, output.stem)
                 note(f"wrote {output}")
-                return
-            text = (
-                resources.files(f"thermicon.{package}").joinpath(folder, file.format(name)).read_text(encoding="utf-8")
-            )
-            write_text(text, output)
+            else:
+                shipped = resources.files(f"thermicon.{package}").joinpath(folder, file.format(name))
+                write_text(shipped.read_text(encoding="utf-8"), output)
+            note(f"Next: {following}")
             return
     known = [each for names, *_ in kinds for each in names]
     raise usage(f"{name!r} is not shipped; {did_you_mean(name, known)}", "--copy")
@@ -128,6 +133,14 @@ def show_rigs() -> None:
     notes = [f"{rig.name}: {warning}" for rig in rigs for warning in rig.warnings]
     said = "flux: heat flow into bare skin at rest; negative because skin loses heat."
     show([grid(("name", "title", "site", *numbers), rows, numbers), "\n".join([said, *notes])])
+
+
+def show_modules() -> None:
+    """Print the modules on record, a line for each data sheet."""
+    from thermicon.circuit.rig.modules import FIGURES, module_rows
+
+    said = "cm² of face, J/K of each plate (–: not on record), hot side. To use one: --set module.name=NAME"
+    show([grid(("module", *FIGURES), module_rows(), FIGURES), said])
 
 
 def show_icons() -> None:

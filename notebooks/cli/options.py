@@ -10,12 +10,14 @@ import inspect
 import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import Field, dataclass, fields, is_dataclass, replace
+from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
 
 import typer
 
 from thermicon.icons.atomic import complete_or_absent
+from thermicon.icons.near_words import nearest_words
 from thermicon.perception.criteria import MOST_ICONS
 
 from ..figures.style import SCREEN, Look, read_width_mm
@@ -97,7 +99,7 @@ def commands(files: Sequence[str], rig: Options, crowd: Options) -> Callable[...
 
 
 Goals = Annotated[
-    str | None,
+    list[str] | None,
     opt(
         "TEXT", 'What is wanted, such as "90 % correct for 95 % of people, time <= 10 s, safety green".', name="--goal"
     ),
@@ -263,9 +265,12 @@ def read_set(files: Sequence[str]) -> IconSet:
     owner: dict[str, str] = {}
     for file, each in zip(files, sets, strict=True) if len(sets) > 1 else ():
         if each.context != joined.context:
+            keys = ("site", "control", "baseline_C")
+            both = [(key.removesuffix("_C"), getattr(each.context, key), getattr(joined.context, key)) for key in keys]
+            told = ", ".join(f"{key} {one}, not {other}" for key, one, other in both if one != other)
             raise JoinError(
-                f"{file} differs from {files[0]} in site, control or baseline, which one set has in common: put the "
-                "icons into one file, or take each file by itself"
+                f"{file} has {told} as in {files[0]}, and one set has these in common: put the icons into one file, "
+                "or take each file by itself"
             )
         for icon in each:
             if icon.name in owner:
@@ -293,7 +298,15 @@ def site_warnings(file: str, icons: IconSet | Icon, rig: Rig) -> tuple[str, ...]
     """Warnings of a set for another site than the rig's."""
     if icons.context.site in (None, rig.site):
         return ()
-    return (f"{file} is for the site {icons.context.site}, the rig {rig.name} is for {rig.site}",)
+    site = icons.context.site
+    return (f"{file} is for the site {site}, the rig {rig.name} is for {rig.site}{site_meant(site)}",)
+
+
+def site_meant(site: str | None) -> str:
+    """Which site of a shipped rig is meant by one that no rig has; empty where none is alike."""
+    known = [each.name.split(".")[0] for each in (resources.files("thermicon.circuit") / "rigs").iterdir()]
+    near = [] if site is None or site in known else nearest_words(site.lower(), known, cutoff=0.75)
+    return f"; did you mean site {near[0]}?" if near else ""
 
 
 def pick(icons: IconSet, name: str | None, most: int = MOST_ICONS) -> list[Icon]:
@@ -325,9 +338,10 @@ def write_text(text: str, output: Path, more: str = "", encoding: str = "utf-8")
     if output == STDOUT:
         typer.echo(text, nl=False)
         return
+    replaced = " (replaced what was there)" * output.exists()
     with complete_or_absent(output) as draft:
         draft.write_text(text, encoding=encoding, newline="\n")
-    note(f"wrote {output}{more}")
+    note(f"wrote {output}{more}{replaced}")
 
 
 def write_frame(frame: pd.DataFrame, output: Path) -> None:

@@ -143,9 +143,9 @@ def rank_command(
     here = read_workers(workers)
     if crowd.memory == "rules" and (doubt or report is not None):
         raise usage("is about predictions for people: leave out --by rules", "--doubt" if doubt else "--report")
-    if goal is not None and crowd.memory == "rules":
+    if goal and crowd.memory == "rules":
         raise usage("is about predictions for people: leave out --by rules", "--goal")
-    wanted = None if goal is None else Goal.parse(goal)
+    wanted = Goal.parse(", ".join(goal)) if goal else None
     if doubt:
         given = {"--task": task.task, "--goal": goal, "--report": report, "--workers": workers, "--details": details}
         for option, value in {**given, "--tracking": crowd.tracking}.items():
@@ -183,7 +183,8 @@ def rank_command(
     elif crowd.memory == "rules":
         show(rules_report(found.ranking, icons.title))
     else:
-        show(rank_report(found, icons.title, near, after_ranking(found, commands(files, rig, crowd)), details))
+        following = after_ranking(found, commands(files, rig, crowd), near)
+        show(rank_report(found, icons.title, near, following, details))
 
 
 def doubt_about(

@@ -23,17 +23,20 @@ from ..files.outputs import (
     check_separate,
 )
 from ..messages import note, noted, progress_bar, usage
+from ..report.following import after_simulating
 from ..report.gate_words import CAUTION
 from ..report.run_report import describe, headline, session_report
 from ..report.terminal import show
 from .options import (
     LARGEST_SEED,
     LONGEST_TAIL_S,
+    CrowdOptions,
     FigureOptions,
     IconName,
     NoFile,
     RigOptions,
     Theirs,
+    commands,
     flag,
     only,
     opt,
@@ -154,6 +157,7 @@ def simulate_file(
 ) -> None:
     """Play the icons of a file (or the one named) on the rig; write the traces, or print a summary of each."""
     from thermicon.circuit import nearest_reachable, simulate
+    from thermicon.circuit.safety.verdict import judge_safety
 
     whole = read_set([file])
     icons, rig = pick(whole, icon), asked.load(whole, file)
@@ -164,6 +168,10 @@ def simulate_file(
     traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
     near = [None if one.reachable else nearest_reachable(each, rig) for each, one in zip(icons, traces, strict=True)]
     tell(traces, rig, output, [None if found is None else found.sentence for found in near])
+    if output is None:
+        lost = [one.icon for one in traces if not (one.reachable and judge_safety(one).safe)]
+        cured = [one.icon for one, found in zip(traces, near, strict=True) if found is not None]
+        typer.echo(f"Next: {after_simulating(cured, lost, commands([file], asked, CrowdOptions()))}")
     for each, picture in zip(icons, pictures, strict=False):
         played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
         replace(figure, figure=picture).write(felt_overview(played, rig.changes))

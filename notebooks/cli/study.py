@@ -12,7 +12,7 @@ from thermicon.icons.number_text import number
 
 from ..messages import REFUSED, note, progress_bar, warn_of_rig
 from ..report.gate_words import CAUTION
-from .options import out
+from .options import RigOptions, command_text, out
 
 if TYPE_CHECKING:
     from ..study.build import Plan
@@ -63,7 +63,9 @@ def study_command(
     note(f"wrote {len(files)} files into {folder}")
     note(CAUTION)
     if materials.study.stimuli.set is not None:
-        note(f"Next, with the answers: thermicon pilot {materials.study.stimuli.set} --answers FILE.csv")
+        rig = RigOptions(materials.study.stimuli.rig, materials.study.stimuli.rig_changes or None)
+        command = command_text([materials.study.stimuli.set], rig, paths=True, command="pilot")
+        note(f"Next, with the answers: {command} --answers FILE.csv")
 
 
 def _check_free(folder: Path) -> None:

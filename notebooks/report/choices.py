@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from thermicon.icons.number_text import count_of, number, percent
+from thermicon.icons.number_text import count_of, listed, number, percent
 
 if TYPE_CHECKING:
     from thermicon.perception import Ranking
@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from thermicon.perception.selection.goal_result import GoalPartResult, GoalResult
 
 SHARE = "For a share of people: what at least so many reach, with the uncertainty of the model."
-MOST_EXCLUDED = 5
 NAMES = {"worst": "the worst pair", "correct": "proportion correct", "bits": "bits", "bits-per-s": "bits per second"}
 
 
@@ -67,9 +66,20 @@ def choice_lines(choice: Choice) -> Iterator[str]:
         )
     energy = "" if math.isnan(choice.total_J) else f", total energy {number(choice.total_J)} J"
     yield f"total duration {number(choice.total_s)} s{energy}"
-    yield from (f"excluded: {name} {reason}" for name, reason in choice.excluded[:MOST_EXCLUDED])
-    if len(choice.excluded) > MOST_EXCLUDED:
-        yield f"and {len(choice.excluded) - MOST_EXCLUDED} more excluded; --json lists all"
+    yield from left_out(choice.excluded)
+
+
+def left_out(excluded: Sequence[tuple[str, str]]) -> Iterator[str]:
+    """A line for the icons that were left out for reasons of one kind, with that of the first.
+
+    >>> list(left_out([(name, "is detected in 4 % of trials only") for name in "abcde"]))
+    ['Left out: a, b, c and 2 more: a is detected in 4 % of trials only']
+    """
+    kinds: dict[str, list[str]] = {}
+    for name, reason in excluded:
+        kinds.setdefault(" ".join(reason.split()[:3]), []).append(name)
+    for names in kinds.values():
+        yield f"Left out: {f'{listed(names)}: ' * (len(names) > 1)}{names[0]} {dict(excluded)[names[0]]}"
 
 
 def scored(objective: str, value: float) -> str:

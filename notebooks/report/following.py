@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
+
+from thermicon.icons.number_text import listed
 
 if TYPE_CHECKING:
     from thermicon.perception import Goal
@@ -19,15 +21,17 @@ WIDER = "A larger contact area, another site or icons of another kind would help
 OF_ICONS = ("detected", "onset")
 
 
-def after_ranking(found: SetReport, command: Command) -> str:
-    """The command for what is in the way of a set: its play, its detection, its confusions; otherwise the export."""
+def after_ranking(found: SetReport, command: Command, cures: Mapping[str, str] | None = None) -> str:
+    """The command for what is in the way of a set: its play (with `cures`), detection, confusions; else the export."""
     from thermicon.perception.criteria import FELT_FROM
 
     missed = [] if found.goal is None else [each.part.quantity for each in found.goal.parts if not each.met]
     icons, wanted = found.ranking.icons, _goal(None if found.goal is None else found.goal.goal)
-    lost = next((icon.name for icon in icons if not (icon.safe and icon.reachable)), None)
-    if lost is not None:
-        return command("simulate", "--icon", lost)
+    lost = [icon.name for icon in icons if not (icon.safe and icon.reachable)]
+    if curable := [name for name in lost if name in (cures or {})]:
+        return f"change the lines of {listed(curable)} as said below, then {command('rank')}"
+    if lost:
+        return command("simulate", "--icon", lost[0])
     if any(each in OF_ICONS for each in missed) or (not missed and min(found.ranking.felt.detected) < FELT_FROM):
         return _wider(found, command)
     if missed == ["count"]:
@@ -39,6 +43,14 @@ def after_ranking(found: SetReport, command: Command) -> str:
     if _close(found):
         return command("improve", "--edits")
     return command("export", *PLAYED)
+
+
+def after_simulating(cured: Sequence[str], lost: Sequence[str], command: Command) -> str:
+    """To rank what is played as written; otherwise to change the icons that have a cure, or are lost."""
+    if not lost:
+        return command("rank")
+    way = f"change the lines of {listed(cured)} as said above" if cured else f"write {listed(lost)} slower or smaller"
+    return f"{way}, then {command('rank')}"
 
 
 def after_choices(found: Frontier, command: Command, written: str | None) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from thermicon.icons.number_text import count_of, number, percent, percent_span
 
 from .blocks import Block, Bullets, Heading, Text, grid
-from .choices import NAMES, goal_lines, laboratory
+from .choices import NAMES, goal_lines, laboratory, left_out
 from .rank_details import trouble_lines
 from .rank_report import BARELY
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
     from .set_report import SetReport
 
-MOST_EXCLUDED = 3
 REFINING_PEOPLE = 24
 """As in `thermicon.perception.selection.search_run`, repeated here to avoid its imports."""
 
@@ -42,15 +41,15 @@ def frontier_report(found: Frontier, title: str, following: str = "") -> list[Bl
     job, largest = found.job, found.points[-1]
     crowd = count_of(job.people, "virtual person", "virtual people")
     what_if = f" with {', '.join(job.rig.changes)}" if job.rig.changes else ""
-    more = len(largest.excluded) - MOST_EXCLUDED
-    amber = found.amber(largest)
-    names = ", ".join(f"{name} (amber)" if name in amber else name for name in largest.icons)
+    met = [point for point, goal in zip(found.points, found.goals, strict=False) if goal.met]
+    named = met[-1] if met else largest
+    amber = found.amber(named)
+    names = ", ".join(f"{name} (amber)" if name in amber else name for name in named.icons)
     said = [
-        f"The {len(largest.icons)}: {names}",
+        f"The {len(named.icons)}{' that meet the goal' * bool(met)}: {names}",
         *(["* not proven to be the best of their number"] * any(not point.optimal for point in found.points)),
         *_goal(found),
-        *(f"Left out: {name} {reason}" for name, reason in largest.excluded[:MOST_EXCLUDED]),
-        *([f"and {more} more left out"] if more > 0 else []),
+        *left_out(largest.excluded),
         *([f"Next: {following}"] if following else []),
     ]
     return [

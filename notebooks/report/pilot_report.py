@@ -80,7 +80,8 @@ def sets_table(found: Observed[Any, Any], files: Sequence[str]) -> Grid:
             (share, low, high), (bits, least, most) = one.proportion_correct, one.information_bits
             cells = [Path(file).name if when == "before" else "", when, percent(share), percent_span(low, high)]
             cells += [f"{bits:.2f}", f"{least:.2f}–{most:.2f}"]
-            rows.append(cells + [f"{each.narrower:.2f} ×" if when == "after" else ""] * enough)
+            change = f"{each.narrower:.2f} ×" if each.narrower >= 1.0 else f"wider, {1.0 / each.narrower:.2f} ×"
+            rows.append(cells + [change if when == "after" else ""] * enough)
     return grid(columns, rows, ("correct", "bits", "narrower"))
 
 

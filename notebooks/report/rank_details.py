@@ -43,7 +43,7 @@ def detail_blocks(made: SetReport) -> list[Block]:
 def trouble_lines(icons: Sequence[IconScore], cures: Mapping[str, str]) -> list[str]:
     """Return one line per icon that is unsafe or not reached, with its cure, and one line on exceeded soft limits."""
     lines = []
-    for icon in icons:
+    for icon in sorted(icons, key=lambda icon: icon.name not in cures):
         if icon.reason:
             states = ["NOT SAFE"] * (not icon.safe) + ["not reached"] * (not icon.reachable)
             cure = f"; {cures[icon.name]}" if icon.name in cures else ""
@@ -128,7 +128,8 @@ def memory_points(ranking: Ranking) -> Iterator[str]:
         else:
             more = f" ({count_of(len(changes) - 1, 'more change')} of order)" if len(changes) > 1 else ""
             order = f"{changes[0][1]} then ranks before {changes[0][0]}{more}"
-        yield f"with the other form of memory ({form}): {percent(share)} correct, {order}"
+        told = f"{percent(share)} correct, {order}"
+        yield f"with the other form of memory ({form}): {told}; no data settle which of the two is right"
 
 
 def carried_points(ranking: Ranking) -> Iterator[str]:

@@ -47,8 +47,10 @@ def rank_report(
     ranking, icons = made.ranking, made.ranking.best_first
     notes = [Text(line, "warn") for line in trouble_lines(ranking.icons, cures or {})]
     notes += [Text(line, "note") for line in outside_lines(icons)]
-    if not details and len(notes) > 1:
-        notes = [notes[0], Text(f"{count_of(len(notes) - 1, 'more note')}: thermicon rank --details", "warn")]
+    shown = max(1, min(len(cures or {}), 3))
+    if not details and len(notes) > shown:
+        more = count_of(len(notes) - shown, "more note")
+        notes = [*notes[:shown], Text(f"{more}: thermicon rank --details", "warn")]
     advice = edit_text(made, ranking.worst) if ranking.worst else ""
     chosen = list(choice_lines(made.choice)) if made.choice else []
     by = "" if ranking.observer == "shipped" else f", observer {ranking.observer}"
@@ -123,7 +125,9 @@ def cards(made: SetReport) -> tuple[tuple[str, str], ...]:
         pair = f"nearest pair: {' and '.join(own.worst_pair)}"
     else:
         share, information, d_prime = ranking.proportion_correct, ranking.information_bits, worst.d_prime
-        pair = f"worst pair: {worst.a} and {worst.b}, confused in {percent(worst.confused_probability)}"
+        fine = {icon.name for icon in icons if icon.playable}
+        those = " that can be played" if {worst.a, worst.b} <= fine < {*ranking.labels} else ""
+        pair = f"worst pair{those}: {worst.a} and {worst.b}, confused in {percent(worst.confused_probability)}"
     if elsewhere is not None:
         within, ends = f"in {laboratory(ranking)} (95 %)", (elsewhere.proportion_correct, elsewhere.information_bits)
     else:

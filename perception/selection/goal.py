@@ -275,9 +275,10 @@ def _number(token: Any) -> float:
 def _where(text: str, problem: Any) -> str:
     place, token = getattr(problem, "pos_in_stream", None), getattr(problem, "token", None)
     if comma := re.search(r"\d,\d", text):
-        return f"goal {text!r}: {comma[0]!r} is not a number; write {comma[0].replace(',', '.')}, with a decimal point"
+        return f"goal: {comma[0]!r} is not a number; write {comma[0].replace(',', '.')}, with a decimal point"
     if place is None or not 0 <= place < len(text) or (token is not None and token.type == "$END"):
         if text.rstrip().endswith(","):
-            return f"goal {text!r}: it ends with a comma: leave it out, or add another part such as 'safety green'"
-        return f"goal {text!r}: it ends too early: write it such as {EXAMPLE!r}"
-    return f"goal {text!r}: {text[place:][:12]!r} at character {place + 1} cannot be read: write it such as {EXAMPLE!r}"
+            return "goal: it ends with a comma: leave it out, or add another part such as 'safety green'"
+        return f"goal, part {text.rpartition(',')[2].strip()!r}: it ends too early: write it such as {EXAMPLE!r}"
+    part, here = text[text.rfind(",", 0, place) + 1 :].partition(",")[0].strip(), text[place:].partition(",")[0][:12]
+    return f"goal, part {part!r}: {here or ','!r} cannot be read: write it such as {EXAMPLE!r}"

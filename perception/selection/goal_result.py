@@ -7,13 +7,13 @@ together: the value that this share of (draw, person) pairs reaches, a person be
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from thermicon.icons.model.arguments import checked
+from thermicon.icons.number_text import listed
 
 from ..arrays import Array
 from .choose import Choice
@@ -59,6 +59,7 @@ class SetOutcome:
         """What a goal for the whole set is judged by."""
         icons, felt = ranking.icons, ranking.felt
         nearest = min(ranking.pairs, key=lambda pair: pair.d_prime, default=None)
+        worst = min(ranking.pairs, key=lambda pair: (-pair.confused_probability, pair.a, pair.b), default=None)
         return cls(
             names=ranking.labels,
             correct=ranking.proportion_correct,
@@ -68,7 +69,7 @@ class SetOutcome:
             onset_s=felt.detection.onset_s,
             durations_s=np.array([icon.duration_s for icon in icons]),
             energies_J=np.array([icon.energy_J for icon in icons]),
-            worst_pair=ranking.worst_pair,
+            worst_pair=None if worst is None else (worst.a, worst.b),
             nearest_pair=None if nearest is None else (nearest.a, nearest.b),
             amber=tuple(icon.name for icon in icons if icon.safe and icon.cautions),
             red=tuple(icon.name for icon in icons if not icon.safe),
@@ -223,10 +224,10 @@ def _binding(part: GoalPart, outcome: SetOutcome) -> str:
     """The obstacle: a pair, an icon, or those that cannot be played."""
     if part.quantity == SAFETY:
         names = (*outcome.red, *outcome.amber)
-        return f"{_listed(names)} {'is' if len(names) == 1 else 'are'} not green"
+        return f"{listed(names)} {'is' if len(names) == 1 else 'are'} not green"
     if part.quantity == "count":
         lost = [name for name in outcome.names if name in outcome.red or name in outcome.unreached]
-        return f"{_listed(lost)} cannot be played" if lost else "the set has fewer icons"
+        return f"{listed(lost)} cannot be played" if lost else "the set has fewer icons"
     if part.quantity in ("correct", "bits", "d_prime"):
         apart = part.quantity == "d_prime"
         if (pair := outcome.nearest_pair if apart else outcome.worst_pair) is None:
@@ -242,7 +243,3 @@ def _binding(part: GoalPart, outcome: SetOutcome) -> str:
     if np.isnan(largest).any():
         return "a thermode states no energy"
     return f"{outcome.names[int(largest.argmax())]} takes most {part.quantity}"
-
-
-def _listed(names: Sequence[str]) -> str:
-    return ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")

@@ -2,6 +2,7 @@
 
 import os
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -22,9 +23,13 @@ def test_a_bar_says_what_is_left_also_where_the_terminal_says_no_width(monkeypat
         monkeypatch.setattr(sys, "stderr", terminal)
         with progress_bar("thinking") as advance:
             assert advance is not None
-            said = os.read(here, 4096).decode()
+            first = os.read(here, 4096).decode()
+            time.sleep(0.11)  # within 0.1 s nothing is drawn again
+            advance(50, 100)
+            later = os.read(here, 4096).decode()
     os.close(here)
-    assert "thinking: " in said and " left" in said
+    assert "thinking: " in first and "? left" in first
+    assert "50/100" in later and " left" in later and "?" not in later
 
 
 def test_a_study_says_its_plan_before_it_is_judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,7 +17,8 @@ def test_the_nearest_is_reached_and_a_little_more_is_not() -> None:
     assert simulate(nearest.icon, WEAK).reachable
     assert nearest.slower == 1.0
     assert not simulate(changed(STEP, 32.0, smaller=nearest.smaller * 1.03), WEAK).reachable
-    assert nearest.sentence == "it is reached with its changes 0.8 times as large, in the same time"
+    said = "it is reached with its changes 0.8 times as large, in the same time: cool by 6 °C at 3 °C/s → "
+    assert nearest.sentence == f"{said}cool by 4.8 °C at 2.4 °C/s; return at 3 °C/s → return at 2.4 °C/s"
 
 
 def test_changes_keep_their_durations_and_levels() -> None:
@@ -61,3 +62,7 @@ def test_the_number_as_printed_is_reached(body: str, control: str, changes: dict
     printed = float(f"{nearest.smaller:.3g}")
     assert printed == pytest.approx(nearest.smaller, rel=1e-12)
     assert simulate(changed(icon, 32.0, slower=float(f"{nearest.slower:.3g}"), smaller=printed), rig).reachable
+    text = str(icon)
+    for old, new in (line.split(" → ") for line in nearest.lines):
+        text = text.replace(old, new)
+    assert nearest.lines and simulate(parse(text).icons[0], rig).reachable

@@ -78,7 +78,7 @@ def test_the_layout() -> None:
 def test_each_mistake_is_told_once_in_the_order_of_the_text(several: dict[str, Any]) -> None:
     found = [[error.code, error.line, error.suggestion or ""] for error in errors_of(several["source"])]
     assert found == several["found"]
-    with pytest.raises(CueErrors, match="(?s)" + r".*\n\n.*".join(code for code, *_ in several["found"])):
+    with pytest.raises(CueErrors, match="(?s)" + r".*\n.*".join(code for code, *_ in several["found"])):
         parse(several["source"])
 
 

@@ -102,6 +102,13 @@ def test_search_says_what_a_goal_lacks(cli: Cli, families: Path) -> None:
     assert "Not reached" not in said.stdout
 
 
+def test_what_is_written_is_said_to_miss_the_goal_and_to_replace(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out.cue"
+    asked = ("improve", two, "--choose", 2, *FEW, "-o", out, "--goal")
+    assert cli.good(*asked, "bits >= 1.9").stderr.endswith(f"wrote {out}, which misses the goal\n")
+    assert cli.good(*asked, "bits >= 0.01").stderr.endswith(f"wrote {out} (replaced what was there)\n")
+
+
 def test_a_row_for_each_number_of_icons(cli: Cli, tmp_path: Path) -> None:
     out, picture = tmp_path / "out.csv", tmp_path / "out.png"
     asked = ("improve", "six-icons", "--people", 4, "--up-to", 4, "--intervals", 4)
@@ -119,7 +126,14 @@ def test_a_row_for_each_number_of_icons(cli: Cli, tmp_path: Path) -> None:
     [
         (
             ("--intervals", 4, "--up-to", 3, "--goal", "correct >= 1 % for 95 % of people, time <= 17 s"),
-            ("time energy goal", "met by the best 2", "✓ correct >= 1 %", "✓ time <= 17 s: ", "(4 draws)"),
+            (
+                "time energy goal",
+                "The 2 that meet the goal: ",
+                "met by the best 2",
+                "✓ correct >= 1 %",
+                "✓ time <= 17 s: ",
+                "(4 draws)",
+            ),
         ),
         (("--intervals", 0, "--up-to", 2), ("about people alone", "milder than in a goal")),
         (

@@ -11,11 +11,11 @@ from thermicon.icons import load_library, read_cue, to_json
 from thermicon.notebooks.study.study_file import study_text
 
 
-@pytest.mark.parametrize("what", ["icons", "rigs", "devices", "formats"])
+@pytest.mark.parametrize("what", ["icons", "rigs", "modules", "devices", "formats"])
 def test_each_kind_is_listed_within_80_columns(cli: Cli, what: str) -> None:
     said = cli("list", what)
     assert (said.exit_code, said.stderr) == (0, "")
-    one = {"icons": "six-icons", "rigs": "thenar", "devices": "qst-tcs2", "formats": "csv"}[what]
+    one = {"icons": "six-icons", "rigs": "thenar", "modules": "CP60340", "devices": "qst-tcs2", "formats": "csv"}[what]
     assert one in said.stdout
     assert said.stdout in cli("list").stdout
     assert max(len(line) for line in said.stdout.splitlines()) <= 80
@@ -27,7 +27,9 @@ def test_each_kind_is_listed_within_80_columns(cli: Cli, what: str) -> None:
 def test_a_copy_reads_as_what_was_copied_and_replaces_nothing(cli: Cli, tmp_path: Path, name: str, ending: str) -> None:
     path = tmp_path / f"mine{ending}"
     said = cli("list", "--copy", name, path)
-    assert (said.exit_code, said.stdout, said.stderr) == (0, "", f"wrote {path}\n")
+    written, following = said.stderr.splitlines()
+    assert (said.exit_code, said.stdout, written) == (0, "", f"wrote {path}")
+    assert following.startswith("Next: ") and str(path) in following
     if ending == ".cue":
         assert read_cue(path).content_hash == load_library(name).content_hash
     elif name == "study":

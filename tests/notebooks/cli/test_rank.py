@@ -109,7 +109,25 @@ def test_files_are_joined_into_one_set(cli: Cli, two: Path, tmp_path: Path) -> N
     more.write_text(more.read_text(encoding="utf-8").replace("32", "33"), encoding="utf-8")
     said = cli("rank", two, more)
     assert said.exit_code == 1
-    assert "more.cue differs from" in said.stderr and "site, control or baseline" in said.stderr
+    assert "more.cue has baseline 33.0, not 32.0 as in" in said.stderr
+
+
+def test_an_icon_that_is_not_reached_is_in_the_way_and_says_its_lines_to_change(cli: Cli, tmp_path: Path) -> None:
+    path = tmp_path / "fast.cue"
+    path.write_text(
+        "cue 1\nset s { site thenar; control display; baseline 32 °C }\n"
+        "icon fast { cool by 6 °C at 60 °C/s; hold for 3 s; return at 3 °C/s }\n"
+        "icon slow { cool by 6 °C at 3 °C/s; hold for 3 s; return at 3 °C/s }\n"
+        "icon warm { warm by 4 °C at 2 °C/s; hold for 3 s; return at 2 °C/s }\n",
+        encoding="utf-8",
+    )
+    said = " ".join(
+        cli.good("rank", path, "--people", 8, "--intervals", 0, "--goal", "correct >= 99.9 %").stdout.split()
+    )
+    assert "In the way: fast and slow are confused most" in said
+    assert "worst pair that can be played: slow and warm" in said
+    assert "Next: change the lines of fast as said below, then thermicon rank" in said
+    assert "cool by 6 °C at 60 °C/s → cool by " in said
 
 
 def test_a_set_that_asks_too_much_says_the_worst_in_twenty_lines(cli: Cli, tmp_path: Path) -> None:

@@ -55,7 +55,7 @@ def test_a_miss_is_data_and_not_a_failure(cli: Cli, two: Path, tmp_path: Path) -
     icon, rig = read_cue(two)["cool-step"], Rig.load("thenar").with_(**{"driver.current_limit_A": 0.8})
     near = nearest_reachable(icon, rig)
     assert near is not None
-    assert said.stdout.endswith(f"\n  nearest   {near.sentence}\n")
+    assert f"\n  nearest   {near.sentence}\n" in said.stdout
     lines = cli("simulate", two, *WEAK, "-o", tmp_path / "a.csv").stderr.splitlines()
     assert "; it is reached with its " in lines[0]
 
