@@ -9,7 +9,6 @@ from tests.builders import messages
 from thermicon.icons import CueErrors, parse
 from thermicon.icons.model.errors import CueError, codes
 
-
 FRAMES = {
     "statement": "cue 1\nicon x {{\n{}\n}}",
     "family": "cue 1\nicon {} {{\n{}\n  hold for 1 s\n}}",
@@ -28,7 +27,7 @@ class Mistake:
 
     @staticmethod
     def of(kind: str, code: str, marked: str, said: str | list[str]) -> "Mistake":
-        parts = (marked.split("\n", 1) + ["change by a at 1 K/s"])[:2] if kind == "family" else [marked]
+        parts = [*marked.split("\n", 1), "change by a at 1 K/s"][:2] if kind == "family" else [marked]
         before, mark, after = FRAMES[kind].format(*parts).partition("▸")
         place = (before.count("\n") + 1, len(before.rpartition("\n")[2]) + 1) if mark else (0, 0)
         return Mistake(before + after, (code, *place), *([said] if isinstance(said, str) else said))
