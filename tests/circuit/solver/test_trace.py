@@ -151,13 +151,6 @@ def test_reached_has_a_stated_tolerance() -> None:
 MESSAGES = messages(__file__)
 
 
-@pytest.mark.parametrize(("given", "words"), MESSAGES["rig"].items())
-def test_an_impossible_rig_is_refused(given: str, words: str) -> None:
-    name, _, changes = given.partition(" ")
-    with pytest.raises(RigError, match=words):
-        Rig.load(name).with_(**json.loads(changes))
-
-
 @pytest.mark.parametrize(("given", "words"), MESSAGES["drive"].items())
 def test_an_impossible_drive_is_refused(given: str, words: str) -> None:
     with pytest.raises(DriveError, match=words):
