@@ -1,7 +1,6 @@
 """Every mistake in the table is told with its code, place and words; every suggestion is itself sound."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import pytest
 
@@ -92,12 +91,12 @@ def test_the_layout() -> None:
     )
 
 
-@pytest.mark.parametrize("several", SEVERAL, ids=lambda several: several["source"][6:30])
-def test_each_mistake_is_told_once_in_the_order_of_the_text(several: dict[str, Any]) -> None:
-    found = [[error.code, error.line, error.suggestion or ""] for error in errors_of(several["source"])]
-    assert found == several["found"]
-    with pytest.raises(CueErrors, match="(?s)" + r".*\n\n.*".join(code for code, *_ in several["found"])):
-        parse(several["source"])
+@pytest.mark.parametrize("source", SEVERAL, ids=lambda source: source[6:30])
+def test_each_mistake_is_told_once_in_the_order_of_the_text(source: str) -> None:
+    found = [[error.code, error.line, error.suggestion or ""] for error in errors_of(source)]
+    assert found == SEVERAL[source]
+    with pytest.raises(CueErrors, match="(?s)" + r".*\n\n.*".join(code for code, *_ in found)):
+        parse(source)
 
 
 def test_carets_stand_under_tabs_and_wide_characters() -> None:
