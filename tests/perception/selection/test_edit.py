@@ -114,6 +114,16 @@ def test_what_makes_a_pair_worse() -> None:
     assert worse(before, after, 2.56).tolist() == [True, False, True, False]
 
 
+@pytest.mark.parametrize(("added_s", "costs"), [(-2.0, [0.7]), (29.9, [0.7 + 2.99]), (30.1, [])])
+def test_an_edit_is_at_most_half_a_minute_longer_and_a_second_costs_a_tenth(
+    rig: Rig, added_s: float, costs: list[float]
+) -> None:
+    longer = parse(f"cue 1; icon a {{ hold for {8.0 + added_s} s }}")["a"]
+    of: Any = SimpleNamespace(kept=SimpleNamespace(rig=rig, durations_s=[8.0]))
+    found = candidate_edits._valid(of, 0, lambda: (longer, "old", "new"), 0.7, 0, 0.0)
+    assert [edit.cost for edit in found] == pytest.approx(costs)
+
+
 def test_numbers_are_found_and_changed_within_repeats(six: IconSet) -> None:
     icon = six["double-dip"]
     numbers = numbers_of(icon, 32.0)
