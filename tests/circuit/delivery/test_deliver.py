@@ -9,7 +9,7 @@ import pytest
 from tests.circuit.delivery.one_drive import changed, icon_of, worst_case
 from thermicon.circuit import Device, Rig, simulate
 from thermicon.circuit.delivery.deliver import deliver, traces_until
-from thermicon.circuit.delivery.delivered_drive import DeliveredDrive, DeliveryDeviation, Deviation, loss_limit
+from thermicon.circuit.delivery.delivered_drive import DeliveredDrive, DeliveryDeviation, Deviation
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats.form import events_of
 from thermicon.circuit.delivery.prepare import lost_text
@@ -329,7 +329,6 @@ def test_a_wave_is_one_event_a_half_swing_and_a_hold_none() -> None:
 
 
 def test_a_loss_is_told_with_its_limit() -> None:
-    assert (loss_limit("receptor difference"), loss_limit("relative d′ drop")) == (0.05, 0.10)
     apart = DeliveryDeviation((Deviation("skin", 0.3, 1.0, 0.2), Deviation("cold receptor", 0.1, 1.0, 0.0612)))
     assert lost_text(apart) == "the cold receptor differs by 0.061 K (rms) from the design, over the stated 0.05 K"
 

@@ -301,18 +301,13 @@ HOT = icon_of("warm by 16 °C at 3 °C/s; hold for 30 s; return at 3 °C/s", nam
 class TestCall:
     """Export in one call: files as bytes, refusals as data, and a folder that gets all files or none."""
 
-    def test_it_gives_the_files_of_prepare_and_pack(self) -> None:
-        result = export(SIX["warming-step"], sure_rig(), "dac-16")
-        assert dict(result.files) == pack([ready("warming-step", rig=sure_rig())], CSV)
-        assert result.refused == ()
-        assert repr(result).startswith("Export(1 icon on thenar for dac-16 as csv: 2 files, ")
-
     def test_a_set_is_exported_for_the_usual_device_of_a_format(self, tmp_path: Path) -> None:
         folder = tmp_path / "new" / "run"
         result = export(list(SIX)[:2], sure_rig(), format="setpoint-csv", pause_s=60.0, folder=folder)
         assert {path.name: path.read_bytes() for path in folder.iterdir()} == dict(result.files)
         assert list((tmp_path / "new").iterdir()) == [folder]
         assert result.device.name == load_format("setpoint-csv").device
+        assert repr(result).startswith("Export(2 icons on thenar for closed-loop-controller as setpoint-csv: 4 files, ")
 
     def test_refusals_are_data_and_nothing_is_written(self, tmp_path: Path) -> None:
         result = export([SIX["warming-step"], HOT], sure_rig(), "dac-16")

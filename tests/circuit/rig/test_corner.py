@@ -1,6 +1,6 @@
 """Corners of a rig: values beyond its file, within physical bounds, equal to `Rig.with_` inside them."""
 
-from typing import Any
+import json
 
 import pytest
 
@@ -77,7 +77,7 @@ def test_blood_is_solved_again_unless_the_rig_fixes_it() -> None:
     assert perturbed(THENAR, ambient_K=8.0).deep_C == pytest.approx(32.0)  # air as warm as the resting skin
 
 
-@pytest.mark.parametrize("case", messages(__file__)["corner"], ids=str)
-def test_what_is_physically_impossible_is_said_in_words(case: dict[str, Any]) -> None:
-    with pytest.raises(RigError, match=case["words"]):
-        perturbed(THENAR, **case["factors"])
+@pytest.mark.parametrize(("factors", "words"), messages(__file__)["corner"].items())
+def test_what_is_physically_impossible_is_said_in_words(factors: str, words: str) -> None:
+    with pytest.raises(RigError, match=words):
+        perturbed(THENAR, **json.loads(factors))

@@ -10,7 +10,7 @@ from tests.builders import missing
 from tests.peltier import coldest_C, greatest_difference_A, heat_rejected_W
 from thermicon.circuit import Rig
 from thermicon.circuit.rig.module import ZERO_C_IN_K, Datasheet, Extraction, Peltier, at_mean_C
-from thermicon.circuit.rig.modules import build_of, load_module, module_names, module_table
+from thermicon.circuit.rig.modules import build_of, load_module, module_names
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.network import current_for_heat_A, greatest_cooling_A, hot_plate_C
 
@@ -154,16 +154,6 @@ def test_four_figures_that_contradict_each_other_are_refused() -> None:
     for heat in (11.48, 416.0):  # both ends of the range are where Θ or R leaves the positive numbers
         found = sheet_of(6.4, 14.4, 66, 25, heat).four_figures()
         assert min(found.resistance_ohm, found.thermal_resistance_K_per_W) > 0
-
-
-def test_every_shipped_module_has_its_source_and_one_is_no_data_sheet() -> None:
-    assert len(module_names()) == 8
-    assert len(EVERY_SHEET) == len(module_table()) == 9
-    derived = {str(record.get("module")) for record in module_table() if record.get("origin") != "datasheet"}
-    assert derived == {"TE-127-1.0-2.5"}
-    (record,) = (record for record in module_table() if record.get("module") == "TE-127-1.0-2.5")
-    assert "no datasheet was seen" in record.source
-    assert record.confidence == "low"
 
 
 THENAR = Rig.load("thenar")

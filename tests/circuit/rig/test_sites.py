@@ -53,15 +53,7 @@ def test_two_perfused_layers_rest_where_the_closed_form_says() -> None:
     assert 32.0 - column.steady_drop_K(-80.0) == pytest.approx(_deep_C(layers, 32.0, 80.0), abs=1e-3)
 
 
-def test_layers_of_the_sites() -> None:
-    horny = {name: Rig.load(name).skin.layers[0].thickness_m * 1e3 for name in SITES}
-    assert horny == pytest.approx({"thenar": 0.17, "fingertip": 0.30, "forearm": 0.022, "hand-dorsum": 0.029})
-    forearm = Rig.load("forearm").skin.layers
-    assert forearm[1].thickness_m == pytest.approx(0.08e-3)
-    assert 1.2e-3 <= forearm[2].thickness_m <= 2e-3
-    assert forearm[2].perfusion_per_s == pytest.approx(1.1e-3)
-    assert all(Rig.load(name).skin.layers[3:] == THENAR.skin.layers[3:] for name in SITES)
-    # A limb colder than the sun-warmed skin over it: no error, since such a rig can be built and simulated.
+def test_a_limb_that_is_colder_than_the_skin_over_it_is_no_error() -> None:
     assert "taken up by bare skin" in THENAR.with_(**{"skin.deep_C": 30.0}).about()
 
 

@@ -7,20 +7,17 @@ import numpy as np
 import pytest
 
 from tests.builders import missing
+from tests.circuit.delivery.one_drive import icon_of
 from thermicon.circuit import Drive, Rig, design, netlist, simulate, simulate_current, simulate_many
 from thermicon.circuit.rig.rigfile import RigError, read_table
 from thermicon.circuit.safety.verdict import summarise
 from thermicon.circuit.solver.trace import write_trace
-from thermicon.icons import Icon, load_library, parse
+from thermicon.icons import load_library, parse
 
 RIG = Rig.load("tcs2")
 STEP = load_library("six-icons")["cooling-step"]
 SKIN = load_library("cooling-step-skin").icons[0]
 PROMPT = RIG.with_(**{"thermode.lag_s": 0.0})
-
-
-def icon_of(body: str, control: str = "display") -> Icon:
-    return parse(f"cue 1\nset s {{ control {control}\n baseline 32 °C }}\nicon a {{ {body} }}\n")["a"]
 
 
 def test_the_display_is_what_the_cue_prescribes_behind_the_lag() -> None:
@@ -101,11 +98,6 @@ def test_a_current_is_refused_in_words() -> None:
     words = r"rig tcs2 is a thermode: it takes temperatures, and ramp prescribes a current; use control display"
     with pytest.raises(RigError, match=words):
         simulate(icon, RIG)
-
-
-def test_a_baseline_out_of_range_is_refused() -> None:
-    with pytest.raises(RigError, match=r"a baseline of 32 °C on the display is beyond its 35 … 60 °C"):
-        simulate(STEP, RIG.with_(**{"thermode.lowest_C": 35.0}))
 
 
 def test_many_people_get_the_same_display_on_their_own_skins() -> None:

@@ -283,8 +283,6 @@ def test_the_reference_is_the_closed_form(row: dict[str, Any]) -> None:
         assert CLOSED[case](row["what"], row["depth_mm"] * 1e-3, row.get("time_s", 0.0)) == pytest.approx(
             value, rel=1e-12
         )
-    decimals = len(row["rounded"].partition(".")[2])
-    assert f"{value:.{decimals}f}" == row["rounded"]
     assert {"title", "formula", "source"} <= REFERENCE["case"][case].keys()
 
 

@@ -90,12 +90,6 @@ def test_a_shape_out_of_reach_has_a_nearest_one(body: str) -> None:
     assert parse(str(near.icon))["x"] == near.icon
 
 
-def test_an_icon_that_plays_another_has_a_nearest_one() -> None:
-    text = "cue 1; set { control display; baseline 32 °C }; icon a { pulse by -4 °C for 300 ms; rest for 2 s }"
-    near = nearest_reachable(parse(text + "; icon b { play a; rest for 1 s; play a }")["b"], THENAR)
-    assert near.icon.corners().duration_s == pytest.approx(5.6)
-
-
 def test_waves_of_current_are_played_as_written() -> None:
     icon = cue("square by 0.5 A every 2 s for 4 s starting up; step to 0.2 A; hold for 1 s", "current")
     trace = simulate(icon, THENAR)

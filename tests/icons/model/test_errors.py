@@ -1,6 +1,6 @@
 """Every error of the table with code, place, words, sound suggestions."""
 
-from typing import Any
+from dataclasses import dataclass
 
 import pytest
 
@@ -8,19 +8,36 @@ from tests.builders import messages
 from thermicon.icons import CueErrors, parse
 from thermicon.icons.model.errors import CueError, codes
 
-
-def source_of(row: dict[str, Any]) -> str:
-    """The text of a row: its source, or its statement or parameters in an icon."""
-    after = f"\n{row['after']}" if "after" in row else ""
-    if "parameters" in row:
-        statement = row.get("statement", "change by a at 1 K/s")
-        return f"cue 1\nicon x({row['parameters']} {{\n  {statement}\n  hold for 1 s\n}}{after}"
-    if "statement" in row:
-        return f"cue 1\nicon x {{ {row.get('before', '')}\n  {row['statement']}\n}}{after}"
-    return str(row["source"])
+FRAMES = {
+    "statement": "cue 1\nicon x {{\n{}\n}}",
+    "family": "cue 1\nicon {} {{\n{}\n  hold for 1 s\n}}",
+    "file": "{}",
+}
 
 
-ALL = [row for rows in messages(__file__, "mistakes.toml").values() for row in rows]
+@dataclass(frozen=True, slots=True)
+class Mistake:
+    """A text, what must be told of it and where (line and column, 0 for no place), and the corrected line if given."""
+
+    source: str
+    told: tuple[str, int, int]
+    words: str
+    suggestion: str | None = None
+
+    @staticmethod
+    def of(kind: str, code: str, marked: str, said: str | list[str]) -> "Mistake":
+        parts = [*marked.split("\n", 1), "change by a at 1 K/s"][:2] if kind == "family" else [marked]
+        before, mark, after = FRAMES[kind].format(*parts).partition("▸")
+        place = (before.count("\n") + 1, len(before.rpartition("\n")[2]) + 1) if mark else (0, 0)
+        return Mistake(before + after, (code, *place), *([said] if isinstance(said, str) else said))
+
+
+ALL = [
+    Mistake.of(kind, code, marked, said)
+    for kind, by_code in messages(__file__, "mistakes.toml").items()
+    for code, rows in by_code.items()
+    for marked, said in rows.items()
+]
 SEVERAL = messages(__file__)["several"]
 
 
@@ -30,15 +47,15 @@ def errors_of(text: str | bytes) -> tuple[CueError, ...]:
     return caught.value.errors
 
 
-@pytest.mark.parametrize("mistake", ALL, ids=lambda mistake: f"{mistake['code']}-{mistake['words'][:20]}")
-def test_a_mistake_is_told_and_a_suggestion_cures_its_line(mistake: dict[str, Any]) -> None:
-    (error,) = errors_of(source_of(mistake))
-    assert [error.code, error.line, error.column] == [mistake["code"], *mistake["place"]]
-    assert mistake["words"] in error.render()
-    assert mistake.get("suggestion", error.suggestion or "") == (error.suggestion or "")
+@pytest.mark.parametrize("mistake", ALL, ids=lambda mistake: f"{mistake.told[0]}-{mistake.words[:20]}")
+def test_a_mistake_is_told_and_a_suggestion_cures_its_line(mistake: Mistake) -> None:
+    (error,) = errors_of(mistake.source)
+    assert (error.code, error.line, error.column) == mistake.told
+    assert mistake.words in error.render()
+    assert mistake.suggestion in (None, error.suggestion or "")
     if error.suggestion is None:
         return
-    lines = source_of(mistake).split("\n")
+    lines = mistake.source.split("\n")
     if error.code == "E009":
         lines.insert(0, "")
     lines[0 if error.code == "E009" else error.line - 1] = error.suggestion
@@ -58,7 +75,7 @@ def test_a_suggestion_keeps_every_word_that_was_meant_or_is_not_made(line: str, 
 def test_every_code_is_reached() -> None:
     at_the_door = {f"E00{n}" for n in range(1, 8)}
     recordings = {"E013", "E014", "E015", "E016"}
-    assert {mistake["code"] for mistake in ALL} | at_the_door | recordings == set(codes())
+    assert {mistake.told[0] for mistake in ALL} | at_the_door | recordings == set(codes())
 
 
 def test_the_layout() -> None:
@@ -74,12 +91,12 @@ def test_the_layout() -> None:
     )
 
 
-@pytest.mark.parametrize("several", SEVERAL, ids=lambda several: several["source"][6:30])
-def test_each_mistake_is_told_once_in_the_order_of_the_text(several: dict[str, Any]) -> None:
-    found = [[error.code, error.line, error.suggestion or ""] for error in errors_of(several["source"])]
-    assert found == several["found"]
-    with pytest.raises(CueErrors, match="(?s)" + r".*\n.*".join(code for code, *_ in several["found"])):
-        parse(several["source"])
+@pytest.mark.parametrize("source", SEVERAL, ids=lambda source: source[6:30])
+def test_each_mistake_is_told_once_in_the_order_of_the_text(source: str) -> None:
+    found = [[error.code, error.line, error.suggestion or ""] for error in errors_of(source)]
+    assert found == SEVERAL[source]
+    with pytest.raises(CueErrors, match="(?s)" + r".*\n.*".join(code for code, *_ in found)):
+        parse(source)
 
 
 def test_carets_stand_under_tabs_and_wide_characters() -> None:

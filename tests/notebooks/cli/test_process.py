@@ -14,7 +14,6 @@ from thermicon.notebooks.cli import doctor
 from thermicon.notebooks.cli.main import COMMANDS, program
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="signals and pipes work differently there")
-VARY = ("--vary", "contact.area_cm2=4:9:2")
 
 
 @pytest.mark.parametrize("start", [("-m", "thermicon.notebooks.cli.main"), ("-P", "-m", "thermicon.notebooks")])

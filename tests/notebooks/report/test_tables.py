@@ -11,7 +11,6 @@ from thermicon.notebooks.report.terminal import lines as rendered
 
 NAMES = ("icon", "most confused with")
 RANK = ("icon", "detected", "onset", "channel", "correct", "most confused with")
-SESSION = ("play", "icon", "start", "skin", "display", "baseline", "safety")
 STYLE = re.compile(r"\x1b\[[0-9;]*m")
 
 

@@ -12,7 +12,6 @@ from tests.notebooks.workbench.openbench import SAID
 from thermicon.icons import parse
 
 GOOD = "icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }\n"
-BAD = "\nicon dip { cool by 6 at 3 °C/s }\nicon dap { hold for 4 }\n"
 
 
 @pytest.fixture

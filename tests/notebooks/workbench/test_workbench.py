@@ -214,9 +214,6 @@ def test_every_knob_says_what_it_changes_and_where_its_range_is_from(rig: Rig) -
         assert knob.source
         assert knob.low <= knob.value <= knob.high
         assert knob.step > 0
-    assert [(knob.key, knob.low, knob.high) for knob in knobs_of(rig)] == [
-        (CONTACT, 0.5, 5.5), (AREA, 1.5, 15.0), (REST, 30.0, 36.0), (LIMIT, 0.1, 2.5)
-    ]  # fmt: skip
     odd = rig.with_(**{AREA: 40, LIMIT: 15, REST: 28})
     by_key = {knob.key: knob for knob in knobs_of(odd)}
     assert (by_key[AREA].high, by_key[LIMIT].high, by_key[REST].low) == (40, 15, 28)

@@ -3,7 +3,6 @@ from dataclasses import replace
 import pytest
 
 from thermicon.circuit.records import Record, RecordError, RecordTable, load_records
-from thermicon.perception import Observer
 from thermicon.perception.evidence.calibrate import calibrate, to_toml
 from thermicon.perception.evidence.results import load_constants
 from thermicon.perception.observer.channels import VARIABLES, source_of
@@ -73,16 +72,3 @@ def test_a_table_without_what_is_needed_is_refused() -> None:
     without = RecordTable(table.name, tuple(r for r in table if r.quantity != "rate Weber fraction"))
     with pytest.raises(RecordError, match=r"thresholds.toml: no quantity 'rate Weber fraction'"):
         calibrate(without)
-
-
-def test_observer_proves_itself() -> None:
-    person = Observer.load()
-    assert person.path_m("forearm") == 0.55
-    assert person.path_m("thenar") == 0.7
-    assert repr(person).startswith("Observer(a ")
-    with pytest.raises(ValueError, match=r"slope of sensation = 0 must be above 0"):
-        replace(person, a=0.0)
-    with pytest.raises(ValueError, match=r"neutral zone: 36 to 36 is empty"):
-        replace(person, neutral_C=(36.0, 36.0))
-    with pytest.raises(ValueError, match=r"lapse rate = 1.2 must lie in 0 to 1"):
-        replace(person, lapse=1.2)

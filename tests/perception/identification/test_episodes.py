@@ -191,14 +191,3 @@ def test_share_of_the_scatter_of_ratings_moves_intensity_noise(observer: Observe
     assert noises[0] == pytest.approx(0.30)
     assert noises[2] == pytest.approx(13.0 / (0.7 * 27.0))
     assert noises[1] == pytest.approx(math.sqrt(noises[0] * noises[2]))
-
-
-def test_messages(observer: Observer) -> None:
-    for field, value, said in (
-        ("rated_share", 1.5, "share of the scatter of ratings = 1.5 must lie in 0 to 1"),
-        ("timing_noise", 0.0, r"memory noise \(episodes\) = 0 must be above 0"),
-        ("missing_cost", -1.0, "cost of a missing episode = -1 must be 0 or more"),
-        ("episode_bar", 0.0, "bar of an episode = 0 must be above 0"),
-    ):
-        with pytest.raises(ValueError, match=said):
-            replace(observer, **{field: value})

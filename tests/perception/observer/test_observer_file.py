@@ -187,6 +187,13 @@ def test_heat_flow_fades_in_a_hold_where_temperature_does_not() -> None:
         ({"softness_K": 0.0}, r"softness of the limits = 0 must be above 0"),
         ({"forearm_factor": Both(1.0, 0.0)}, r"warm threshold on the forearm = 0 must be above 0"),
         ({"neutral_flux": Both((3.0, 3.0), (1.0, 2.0))}, r"cold neutral heat flow: 3 to 3 is empty"),
+        ({"a": 0.0}, r"slope of sensation = 0 must be above 0"),
+        ({"neutral_C": (36.0, 36.0)}, r"neutral zone: 36 to 36 is empty"),
+        ({"lapse": 1.2}, r"lapse rate = 1.2 must lie in 0 to 1"),
+        ({"rated_share": 1.5}, r"share of the scatter of ratings = 1.5 must lie in 0 to 1"),
+        ({"timing_noise": 0.0}, r"memory noise \(episodes\) = 0 must be above 0"),
+        ({"missing_cost": -1.0}, r"cost of a missing episode = -1 must be 0 or more"),
+        ({"episode_bar": 0.0}, r"bar of an episode = 0 must be above 0"),
     ],
 )
 def test_an_observer_proves_itself(change: dict[str, Any], message: str) -> None:

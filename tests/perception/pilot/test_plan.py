@@ -1,7 +1,7 @@
 """Plans of experiments: the precision of each size."""
 
+import json
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -44,7 +44,7 @@ def test_a_plan_of_one_and_of_two_sets(icons: IconSet, rig: Rig) -> None:
     assert two.cheapest == design
 
 
-@pytest.mark.parametrize("case", messages(__file__)["plan"], ids=str)
-def test_sizes_that_cannot_be_are_refused(icons: IconSet, rig: Rig, case: dict[str, Any]) -> None:
-    with pytest.raises(ValueError, match=case["words"]):
-        plan(icons, rig, **case["options"])
+@pytest.mark.parametrize(("options", "words"), messages(__file__)["plan"].items())
+def test_sizes_that_cannot_be_are_refused(icons: IconSet, rig: Rig, options: str, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        plan(icons, rig, **json.loads(options))

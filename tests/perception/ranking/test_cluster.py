@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.builders import free_port
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
 from thermicon.perception import rank
@@ -17,12 +18,6 @@ from thermicon.perception.ranking import batches, cluster
 from thermicon.perception.ranking.cluster import ClusterError, on_cluster
 
 ICONS, RIG = load_library("six-icons"), Rig.load("thenar")
-
-
-def free_port() -> int:
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        return int(one.getsockname()[1])
 
 
 @contextmanager

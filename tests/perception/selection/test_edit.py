@@ -109,10 +109,19 @@ def test_a_repeat_is_an_edit(rig: Rig) -> None:
     assert edit.d_prime >= DISTINGUISHABLE_DPRIME
 
 
-def test_what_makes_a_pair_worse_and_what_a_second_costs() -> None:
+def test_what_makes_a_pair_worse() -> None:
     before, after = np.array([3.0, 3.0, 9.0, 9.0]), np.array([2.89, 2.91, 5.11, 5.13])
     assert worse(before, after, 2.56).tolist() == [True, False, True, False]
-    assert (candidate_edits.PER_SECOND, candidate_edits.MOST_LONGER_S) == (0.1, 30.0)
+
+
+@pytest.mark.parametrize(("added_s", "costs"), [(-2.0, [0.7]), (29.9, [0.7 + 2.99]), (30.1, [])])
+def test_an_edit_is_at_most_half_a_minute_longer_and_a_second_costs_a_tenth(
+    rig: Rig, added_s: float, costs: list[float]
+) -> None:
+    longer = parse(f"cue 1; icon a {{ hold for {8.0 + added_s} s }}")["a"]
+    of: Any = SimpleNamespace(kept=SimpleNamespace(rig=rig, durations_s=[8.0]))
+    found = candidate_edits._valid(of, 0, lambda: (longer, "old", "new"), 0.7, 0, 0.0)
+    assert [edit.cost for edit in found] == pytest.approx(costs)
 
 
 def test_numbers_are_found_and_changed_within_repeats(six: IconSet) -> None:
