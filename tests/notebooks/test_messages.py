@@ -2,6 +2,7 @@
 
 import os
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -23,8 +24,13 @@ def test_a_bar_says_what_is_left_also_where_the_terminal_says_no_width(monkeypat
         with progress_bar("thinking") as advance:
             assert advance is not None
             said = os.read(here, 4096).decode()
+            advance(3, 10)
+            time.sleep(0.2)  # a bar is drawn ten times a second
+            advance(7, 10)
+            later = os.read(here, 4096).decode()
     os.close(here)
     assert "thinking: " in said and " left" in said
+    assert "7/10" in later
 
 
 def test_a_study_says_its_plan_before_it_is_judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

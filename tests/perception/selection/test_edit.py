@@ -148,6 +148,8 @@ def test_numbers_are_found_and_changed_within_repeats(six: IconSet) -> None:
             2.0 * number.value
         ]
         assert sum(a != b for a, b in zip(str(icon).split(), str(new).split(), strict=True)) == 1
+    rounded = [candidate_edits._outwards(value, numbers[0], 2) for value in (2.341, 1.287)]
+    assert rounded == pytest.approx([2.4, 1.2]), "away from what it was, so that the effect is kept"
 
 
 def test_a_temperature_counts_from_the_baseline(monkeypatch: pytest.MonkeyPatch) -> None:
