@@ -58,7 +58,7 @@ def parse(text: str | bytes, file: str = "<text>") -> IconSet:
         return analysis.icons
     findings = analysis.findings[:MOST_ERRORS]
     more = analysis.more + len(analysis.findings) - len(findings)
-    raise CueErrors(_Suggester(source, len(analysis.findings)).errors(findings), more)
+    raise CueErrors(_Suggester(source, len(findings) + more).errors(findings), more)
 
 
 class _Suggester:

@@ -18,7 +18,7 @@ import numba
 import pytest
 
 from thermicon.circuit import compiled
-from thermicon.icons.atomic import NotPrivate, private_folder
+from thermicon.icons.atomic import NotPrivate, private_folder, remove_unused
 
 ONLY_POSIX = pytest.mark.skipif(sys.platform == "win32", reason="owners and modes are those of POSIX")
 
@@ -237,3 +237,12 @@ def test_a_private_folder_has_private_folders_above(tmp_path: Path) -> None:
         os.chown(open_ / "mine", 12345, 12345)
         with pytest.raises(NotPrivate, match="belongs to another user"):
             private_folder(open_ / "mine")
+
+
+def test_what_is_read_or_written_now_and_then_is_kept(tmp_path: Path) -> None:
+    now, day = time.time(), 24 * 3600.0
+    for name, ages in {"read": (1, 99), "written": (99, 1), "neither": (91, 92)}.items():
+        (tmp_path / name).write_text("")
+        os.utime(tmp_path / name, tuple(now - age * day for age in ages))
+    remove_unused(tmp_path.iterdir(), compiled.STALE_S)
+    assert {path.name for path in tmp_path.iterdir()} == {"read", "written"}

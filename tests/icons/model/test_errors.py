@@ -122,13 +122,11 @@ def test_errors_that_are_not_shown_are_counted() -> None:
         assert str(CueErrors((error,), more)).endswith(f"... {said}")
 
 
-@pytest.mark.slow
-def test_of_many_errors_a_hundred_are_shown() -> None:
-    with pytest.raises(CueErrors, match="and 50 more errors") as caught:
-        parse("cue 1\nicon x {\n" + "hodl for 1 s\n" * 150 + "}")
-    assert (len(caught.value.errors), caught.value.more) == (100, 50)
-    with pytest.raises(CueErrors, match="and at least 900 more errors"):
-        parse("cue 1\nicon x {\n" + "hodl for 1 s\n" * 5000 + "}")
+def test_of_many_errors_a_hundred_are_shown_and_a_thousand_read() -> None:
+    for count, more in ((150, "50"), (1200, "at least 900")):
+        with pytest.raises(CueErrors, match=f"and {more} more errors") as caught:
+            parse("cue 1\nicon x {\n" + "blah\n" * count + "}")
+        assert len(caught.value.errors) == 100
 
 
 @pytest.mark.parametrize(

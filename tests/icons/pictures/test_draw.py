@@ -102,6 +102,8 @@ def test_a_plot_shows_levels_times_and_directions() -> None:
     assert [segment.tolist() for segment in lines.get_segments()] == [list(each) for each in pairwise(corners)]
     assert [tuple(colour[:3]) for colour in lines.get_colors()] == [to_rgb(c) for c in (COOL, STAY, WARM)]
     assert (ax.get_title(), ax.get_xlabel()) == ("cooling-step", "time (s)")
+    low, high = ax.get_ylim()
+    assert low < 26.0 and 32.0 < high < low + 12.0, "all of it is seen, and it fills half of the height"
     (lines,) = SHAPES["step"].plot().collections
     assert list(lines.get_linewidths()) == [1.5, 2.5, 1.5, 2.5], "steps are thinner than ramps"
     assert [tuple(colour[:3]) for colour in lines.get_colors()] == [to_rgb(c) for c in (COOL, STAY, WARM, STAY)]

@@ -109,8 +109,8 @@ def test_enough_draws_say_by_how_much_it_narrowed(cli: Cli, two: Path, answers: 
 
 def test_plan_of_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "plan.json"
-    said = cli("pilot", two, *QUICK, "--participants", "16,4", "--trials", "6,20", "--json", out)
-    told(said, "participants 6 trials 20 trials", "in points; * marks an interval")
+    said = cli("pilot", two, *QUICK, "--participants", "16,4", "--trials", "6,20", "--wanted", 12, "--json", out)
+    told(said, "participants 6 trials 20 trials", "in points; * marks an interval of 12 points or less")
     own = json.loads(out.read_text(encoding="utf-8"))
     assert [(each["participants"], each["trials"]) for each in own["designs"]] == [(4, 6), (4, 20), (16, 6), (16, 20)]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Device, Rig
-from thermicon.icons import load_library
+from thermicon.icons import load_library, parse
 from thermicon.notebooks.study.schedule import Pace, Schedule, Trial, planned_plays
 from thermicon.notebooks.study.study_file import StudyError, Timing
 from thermicon.notebooks.study.timing import (
@@ -41,6 +41,17 @@ def test_a_given_gap_stays_and_its_carry_over_is_stated() -> None:
     gap = find_gap(ICONS, THENAR, Timing(gap_s=12.0), held=True)
     assert (gap.gap_s, gap.reason) == (12.0, "given")
     assert gap.carry_over_d_prime > 1.0
+
+
+def test_what_is_felt_after_an_icon_counts_as_if_a_rest_were_written_there() -> None:
+    """They end as the skin begins to feel it: 5 s more of rest, and 5 s less of gap, are the same to people."""
+
+    def carried(end: str, gap_s: float) -> float:
+        body = f"by 4 °C at 8 °C/s; return at 8 °C/s{end} }}"
+        icons = parse(f"cue 1\nset x {{ control display }}\nicon a {{ cool {body}\nicon b {{ warm {body}")
+        return carried_over(list(icons), THENAR, gap_s, True)[0]
+
+    assert carried("", 35.0) == pytest.approx(carried("; rest for 5 s", 30.0), rel=1e-3)
 
 
 def test_the_search_begins_at_the_longest_gap() -> None:

@@ -68,6 +68,8 @@ def test_errors_keep_the_last_drawing_and_are_told_where_they_are(dip: Scene, ri
 def test_a_suggestion_taken_mends_its_line_and_no_other() -> None:
     assert mended(BROKEN, 3) == DIP
     assert mended(BROKEN, 4) is None
+    many = "cue 1\nicon dip {\n" + "  cool by 6 at 3 K/s\n" * 104 + "}"
+    assert mended(many, 3) == many.replace("6 at", "6 °C at", 1), "also of more than are shown"
     assert mended(DIP[6:], 1) == DIP
     assert mended("  " + BROKEN.replace("\n", "\r\n"), 3) == "  " + DIP.replace("\n", "\r\n")
 

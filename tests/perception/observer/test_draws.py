@@ -10,6 +10,7 @@ from thermicon.circuit.records import RecordError
 from thermicon.perception import Observer
 from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.evidence.results import inputs_digest
+from thermicon.perception.observer.constants import BETWEEN_LABORATORIES
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.draws_file import current_inputs, read_draws, shipped_file, to_text
 from thermicon.perception.observer.observer import variant_records
@@ -55,6 +56,12 @@ def test_a_draw_is_one_consistent_observer(posterior: PosteriorDraws) -> None:
     table = posterior.table(17)
     assert table.one("sensitivity between people", channel="cold").central == values["cold sensitivity between people"]
     assert {r.quantity for r in table} == {r.quantity for r in variant_records()}
+
+
+def test_draws_of_which_one_has_no_spread_between_laboratories_are_not_of_one(posterior: PosteriorDraws) -> None:
+    some = posterior.draws.copy()
+    some[0, posterior.names.index(BETWEEN_LABORATORIES)] = 0.0
+    assert not replace(posterior, draws=some).one_laboratory
 
 
 def test_the_nominal_draw_lies_in_the_middle(posterior: PosteriorDraws) -> None:

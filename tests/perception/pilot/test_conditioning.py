@@ -107,6 +107,7 @@ def test_weights_and_resampling() -> None:
     assert effective(weights) == pytest.approx(1.0 / 0.54)
     chosen = np.bincount(systematic(weights, 1000, np.random.default_rng(0)), minlength=3)
     assert np.abs(chosen - 1000 * weights).max() <= 1
+    assert {*systematic(np.array([0.0, 0.5, 0.5, 0.0]), 7, np.random.default_rng(1))} == {1, 2}, "nothing of weight 0"
 
 
 def test_weights_are_of_the_highest_power_that_leaves_enough() -> None:

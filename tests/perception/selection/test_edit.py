@@ -109,6 +109,28 @@ def test_a_repeat_is_an_edit(rig: Rig) -> None:
     assert edit.d_prime >= DISTINGUISHABLE_DPRIME
 
 
+def test_what_would_bring_another_pair_together_is_not_offered(rig: Rig) -> None:
+    """The cheapest edit alone is not that beside an icon which is just what it would make."""
+
+    def offered(*third: str) -> tuple[str, bool]:
+        body = "by {} °C at {} °C/s; hold for 1 s; return at 2 °C/s".format
+        parts = (body("2", "2"), body("2", "1.4"), *third)
+        text = "\n".join(f"icon {name} {{ warm {part} }}" for name, part in zip("abc", parts, strict=False))
+        icons = parse(f"cue 1\nset x {{ control display; baseline 32 °C }}\n{text}")
+        ranking = rank(icons, rig, people=12, parameters=0)
+        edit = cheapest_edit(ranking, "a", "b")
+        assert isinstance(edit, Edit)
+        after = rank([edit.edited if one.name == edit.icon else one for one in icons], rig, people=12, parameters=0)
+        before, then = (each.d_prime[2:, :2] for each in (ranking, after))
+        return f"{edit.icon}: {edit.new}", bool((then > np.minimum(before, 2.0 * DISTINGUISHABLE_DPRIME) - 0.11).all())
+
+    alone, _ = offered()
+    weaker = f"{alone.removeprefix('b: warm ')}; hold for 1 s; return at 2 °C/s"
+    (beside, kept), far = offered(weaker), offered("by 4 °C at 1.4 °C/s; hold for 1 s; return at 2 °C/s")
+    assert alone.startswith("b: ") and beside.startswith("a: ") and kept
+    assert far == (alone, True)
+
+
 def test_what_makes_a_pair_worse() -> None:
     before, after = np.array([3.0, 3.0, 9.0, 9.0]), np.array([2.89, 2.91, 5.11, 5.13])
     assert worse(before, after, 2.56).tolist() == [True, False, True, False]
@@ -135,6 +157,8 @@ def test_numbers_are_found_and_changed_within_repeats(six: IconSet) -> None:
             2.0 * number.value
         ]
         assert sum(a != b for a, b in zip(str(icon).split(), str(new).split(), strict=True)) == 1
+    rounded = [candidate_edits._outwards(value, numbers[0], 2) for value in (2.341, 1.287)]
+    assert rounded == pytest.approx([2.4, 1.2]), "away from what it was, so that the effect is kept"
 
 
 def test_a_temperature_counts_from_the_baseline(monkeypatch: pytest.MonkeyPatch) -> None:

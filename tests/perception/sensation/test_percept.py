@@ -1,9 +1,11 @@
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from thermicon.perception import Observer, Percept, perceive
+from thermicon.perception.observer.constants import Both
 from thermicon.perception.sensation.percept import on_one_clock
 from thermicon.perception.sensation.received import uniform_clock
 
@@ -61,6 +63,15 @@ def test_a_larger_area_and_a_shorter_path_are_felt_sooner(cue: Any, observer: Ob
     assert hand is not None and forearm is not None and large is not None
     assert hand - forearm == pytest.approx(0.15 / 0.5, abs=5e-3)
     assert large < hand
+
+
+def test_sites_of_the_forearm_have_thresholds_of_their_own(cue: Any, observer: Observer) -> None:
+    trace, dull = cue(change=1.0), replace(observer, forearm_factor=Both(2.0, 2.0))
+    wrist, arm, thenar, hand = (
+        perceive(trace.but(site=site), dull).psi_warm.max()
+        for site in ("left wrist", "Forearm", "thenar", "hand-dorsum")
+    )
+    assert wrist == arm < thenar == hand
 
 
 def test_felt_peaks_are_later_by_conduction(cue: Any, observer: Observer) -> None:
