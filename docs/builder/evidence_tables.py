@@ -1,4 +1,4 @@
-"""Tables of the inference as Markdown: what the pages of docs/ hold between their `generated` marks.
+"""Tables of the inference as Markdown: what fills the `site` marks of the pages of docs/.
 
 Every number comes from the shipped data files, so that a page cannot say anything else.
 """
