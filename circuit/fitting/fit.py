@@ -135,7 +135,7 @@ def _explicit(rig: Rig, keys: Sequence[FitKey]) -> Rig:
     table = json.loads(rig.document).get("module", {})
     if not any(key.key.removeprefix("module.") in PARAMETERS for key in keys) or not {"datasheet", "name"} & set(table):
         return rig
-    nothing: dict[str, object] = {f"module.{way}": None for way in ("datasheet", "name", "extraction") if way in table}
+    nothing: dict[str, object] = {f"module.{way}": None for way in ("datasheet", "name") if way in table}
     return rig.with_(**nothing, **{f"module.{name}": getattr(rig.module, name) for name in PARAMETERS})
 
 

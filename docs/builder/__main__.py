@@ -18,9 +18,11 @@ from command_options import command_options
 from data_tables import DATA_TABLES
 from gallery import Gallery
 from key_tables import KEY_TABLES
+from moving_percept import moving_percept
 from paper_figures import circuit_diagram, paper_figures
 from posterior_tables import TABLES as POSTERIOR_TABLES
 from python_names import python_index, python_pages
+from rig_stack import rig_stack
 from staging import ROOT, Staging
 
 from thermicon.perception.ranking.batches import code_digest
@@ -46,6 +48,8 @@ def build(folder: Path, *, execute: bool) -> int:
             "gallery": gallery.markdown,
             "paper figures": lambda: paper_figures(site.write),
             "circuit diagram": lambda: circuit_diagram(site.write),
+            "moving percept": lambda: moving_percept(site.write),
+            "rig stack": lambda: rig_stack(site.write),
         }
     )
     site.stage(dict(python_pages()))

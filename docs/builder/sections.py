@@ -23,6 +23,9 @@ Write **thermal icons** as text, see what they do to display, skin and receptors
 confuse, before anybody is heated or cooled. Everything here that looks like a result is a prediction, not a
 measurement.
 
+<!-- site: moving percept -->
+<!-- end of site -->
+
 ::::{grid} 1 2 2 3
 :gutter: 3
 

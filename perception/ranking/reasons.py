@@ -1,7 +1,7 @@
 """Why a pair is distinguishable or not: sentences whose every number can be recomputed.
 
 The numbers come from the two nominal traces and percepts through the public functions of
-`features`, `distance_components` and `rules`.
+`features`, `episodes` and `rules`.
 
 Components of the distance of two icons as they are remembered are direction, intensity, rate, duration and pause. Each
 is the part of d′ from memory that it carries, so that their squares add up to d′² of the pair.

@@ -158,8 +158,6 @@ def perceive(trace: Trace, observer: Observer | None = None, area_m2: float | No
     ------
     ValueError
         For a trace of fewer than two rows or without a uniform clock.
-    RigError
-        For a trace of a load in place of skin.
 
     Examples
     --------

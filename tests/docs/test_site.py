@@ -7,15 +7,22 @@ import sys
 from pathlib import Path, PurePosixPath
 from types import ModuleType
 
+import numpy as np
 import pytest
 from click import Context
 from typer.main import get_command
 
+from tests.legible import troubles
+from thermicon.circuit import Rig, simulate
+from thermicon.icons import load_library
 from thermicon.notebooks.cli.main import app
+from thermicon.perception import perceive
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILDER = ROOT / "docs" / "builder"
-SLOTS = ("options of commands", "python names", "gallery", "paper figures", "circuit diagram")
+DRAWN = ("gallery", "paper figures", "circuit diagram", "moving percept", "rig stack")
+TABLES = ("data_tables", "key_tables", "posterior_tables")
+SLOTS = ("options of commands", "python names", *DRAWN)
 FROM_ELSEWHERE = re.compile(r"""(?:<script[^>]+src|<link[^>]+href|<img[^>]+src)="(?:https?:)?//[^"]*""")
 """A script, a style or a picture that a page would fetch from another host."""
 
@@ -25,7 +32,7 @@ def builder(monkeypatch: pytest.MonkeyPatch) -> dict[str, ModuleType]:
     """The modules of docs/builder, which is a program and not a package."""
     monkeypatch.syspath_prepend(str(BUILDER))
     names = ("staging", "sections", "command_options", "python_names", "gallery", "page_pictures")
-    return {name: __import__(name) for name in (*names, "data_tables", "key_tables", "posterior_tables")}
+    return {name: __import__(name) for name in (*names, "rig_stack", "moving_percept", *TABLES)}
 
 
 def slots(builder: dict[str, ModuleType]) -> set[str]:
@@ -76,7 +83,7 @@ def test_a_slot_is_filled_and_its_stand_in_gone(builder: dict[str, ModuleType], 
 
 
 def test_every_slot_is_on_a_page(builder: dict[str, ModuleType]) -> None:
-    pages = [path.read_text(encoding="utf-8") for path in builder["staging"].pages()]
+    pages = [path.read_text(encoding="utf-8") for path in builder["staging"].pages()] + [builder["sections"].WELCOME]
     assert {slot["name"] for page in pages for slot in builder["staging"].SLOT.finditer(page)} == slots(builder)
 
 
@@ -199,3 +206,30 @@ def test_tutorials_and_predictions_are_made_once(tmp_path: Path) -> None:
     assert gallery.count("-confusions.png") >= 6
     assert "Executing notebook" not in build(tmp_path)
     assert {path: path.stat().st_mtime_ns for path in (tmp_path / "predicted").rglob("*.png")} == first
+
+
+@pytest.mark.parametrize("width_mm", [85.0, 180.0])
+def test_the_stack_of_a_rig_names_keys_that_set_it(builder: dict[str, ModuleType], width_mm: float) -> None:
+    rig = Rig.load("thenar")
+    axes = builder["rig_stack"].plot_stack(rig, width_mm)
+    said = [text.get_text().split(" = ") for text in axes.texts if " = " in text.get_text()]
+    assert rig.with_(**{key: 0.9 * float(value.rstrip(", …")) for key, value in said}).changes
+    assert len(said) >= 20
+    assert troubles(axes.figure) == []
+
+
+def test_a_moving_percept_shows_what_is_felt_at_each_moment(builder: dict[str, ModuleType]) -> None:
+    moving = builder["moving_percept"]
+    trace = simulate(load_library("six-icons")["cold-to-warm"], "thenar", tail_s=2.0)
+    percept = perceive(trace)
+    svg = moving.moving_svg(trace, percept)
+    assert svg == moving.moving_svg(trace, percept)
+    assert "predicted" in svg
+    assert len(svg) < 300_000
+    for name, psi in (("cold", percept.psi_cold), ("warm", percept.psi_warm)):
+        frames = re.search(f"@keyframes {name} .*", svg)
+        assert frames is not None
+        shares = np.array(re.findall(r"scaleY\(([\d.]+)\)", frames[0]), dtype=float)
+        seconds = np.linspace(0.0, 10.0, shares.size)
+        felt = np.interp(seconds, percept.time_s, psi) / percept.psi_cold.max()
+        np.testing.assert_allclose(shares, felt, atol=0.001)
