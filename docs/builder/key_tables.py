@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,11 +21,6 @@ BOUNDS = {"minimum": "≥ {:g}", "exclusiveMinimum": "> {:g}", "maximum": "≤ {
 KINDS = {"integer": "whole number", "number": "number", "string": "text", "boolean": "true or false"}
 
 
-def rig_keys_table() -> str:
-    """Every key of a rig file with its values and its default."""
-    return _table(RigTable)
-
-
 def modules_table() -> str:
     """The modules on record, a line for each data sheet."""
     rows = []
@@ -36,11 +32,6 @@ def modules_table() -> str:
         rows.append((f"`{name}`", size, "–" if plate is None else f"{plate:g}", *figures))
     head = ("name", "face", "plates, J/K each", "hot side °C", "Imax A", "Vmax V", "Qmax W", "ΔTmax K")
     return markdown(head, rows)
-
-
-def device_keys_table() -> str:
-    """Return every key of a device file with its values and its default, as a table of Markdown."""
-    return _table(DeviceTable)
 
 
 def device_quantities_table() -> str:
@@ -67,6 +58,7 @@ def study_keys_table() -> str:
 
 
 def _table(model: type[BaseModel]) -> str:
+    """Every key of a file with its values and its default."""
     schema = model.model_json_schema()
     return markdown(("key", "values", "default"), _rows(schema, schema, ""))
 
@@ -116,9 +108,9 @@ def default_of(value: object) -> str:
 
 KEY_TABLES = {
     "study keys": study_keys_table,
-    "rig keys": rig_keys_table,
+    "rig keys": partial(_table, RigTable),
     "modules": modules_table,
-    "device keys": device_keys_table,
+    "device keys": partial(_table, DeviceTable),
     "device quantities": device_quantities_table,
 }
 """The tables by the names that mark their places in the pages."""
