@@ -34,9 +34,8 @@ def build(folder: Path, *, execute: bool) -> int:
     sys.modules.setdefault("rfc3987_syntax", cast(ModuleType, None))
     from sphinx.cmd.build import build_main
 
-    drawn_by = Path(__file__).with_name("gallery.py").read_bytes()
     code = code_digest()
-    gallery_digest = hashlib.sha256(code.encode() + drawn_by).hexdigest()
+    gallery_digest = hashlib.sha256(code.encode() + Path(__file__).with_name("gallery.py").read_bytes()).hexdigest()
     kept = folder / "predicted" / gallery_digest[:16] if execute else None
     site = Staging(folder / "source", {}, kept)
     gallery = Gallery(kept, site.write)
@@ -53,12 +52,9 @@ def build(folder: Path, *, execute: bool) -> int:
         }
     )
     site.stage(dict(python_pages()))
-    settings = {
-        "nb_execution_mode": "cache" if execute else "off",
-        "nb_execution_cache_path": str(folder / "executed" / code[:16]),
-    }
-    overrides = [word for key, value in settings.items() for word in ("-D", f"{key}={value}")]
-    words = ["-b", "html", "-q", "-W", "--keep-going", "-t", "staged", "-c", str(ROOT / "docs"), *overrides]
+    words = ["-b", "html", "-q", "-W", "--keep-going", "-t", "staged", "-c", str(ROOT / "docs")]
+    words += ["-D", f"nb_execution_mode={'cache' if execute else 'off'}"]
+    words += ["-D", f"nb_execution_cache_path={folder / 'executed' / code[:16]}"]
     doctrees = html_folder(folder, execute=execute).with_name("doctrees") / code[:16]
     for stale in set(doctrees.parent.glob("*")) - {doctrees}:  # what Sphinx has read shows another state of the program
         shutil.rmtree(stale)

@@ -14,7 +14,6 @@ from table_text import UNITS, markdown, number, signed, span
 from thermicon.circuit.records import Record
 from thermicon.perception.evidence.results import (
     UNMOVED_SD,
-    AblatedRow,
     judging_predictions,
     load_ablation,
     load_constants,
@@ -74,18 +73,13 @@ def unmoved_sentence() -> str:
 
 def ablation_table() -> str:
     """Every run of the ablation, most lost first."""
-    rows = sorted(load_ablation(), key=lambda row: row.difference)
     lines = []
-    for row in rows:
+    for row in sorted(load_ablation(), key=lambda row: row.difference):
+        whole = "" if row.difference else " (the whole observer)"
+        ran = f"without {row.without}" if row.without else f"**{row.variable}**{whole}"
         worst = f"{row.worst} ({signed(row.worst_sd, 1)})"
-        lines.append((_ran(row), row.replaced_by, signed(row.difference, 1), f"{row.squares:.1f}", worst))
+        lines.append((ran, row.replaced_by, signed(row.difference, 1), f"{row.squares:.1f}", worst))
     return markdown(("observer", "what stands in its place", "log evidence", "Σ(miss/SD)²", "worst row (SD)"), lines)
-
-
-def _ran(row: AblatedRow) -> str:
-    if row.without:
-        return f"without {row.without}"
-    return f"**{row.variable}**" + ("" if row.difference else " (the whole observer)")
 
 
 def left_out_table() -> str:

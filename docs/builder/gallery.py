@@ -5,15 +5,17 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from matplotlib.figure import Figure
 
-    from thermicon.icons import IconSet
-    from thermicon.perception import Ranking
+from thermicon.circuit import Rig
+from thermicon.icons import IconSet, library
+from thermicon.notebooks.figures.set_figures import set_figure
+from thermicon.perception import Ranking, rank
 
 RIG = "thenar"
 PEOPLE = 50
@@ -30,8 +32,6 @@ class Gallery:
 
     def markdown(self) -> str:
         """Return the sets one after the other, and write their pictures."""
-        from thermicon.icons import library
-
         shipped = library()
         return "\n".join("\n".join(self._set(entry, shipped[entry.name])) for entry in shipped.entries)
 
@@ -60,12 +60,6 @@ class Gallery:
 
 def _predict(icons: IconSet, kept: Path) -> None:
     """Rank a set, or some icons of a large one, and keep what the page shows of it."""
-    from dataclasses import replace
-
-    from thermicon.circuit import Rig
-    from thermicon.notebooks.figures.set_figures import set_figure
-    from thermicon.perception import rank
-
     rig, which, members = Rig.load(RIG), "All icons", list(icons)
     if len(members) > MOST_ICONS:
         step = len(members) // SAMPLED  # and one more, so that every parameter varies

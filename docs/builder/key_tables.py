@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,20 +21,10 @@ BOUNDS = {"minimum": "≥ {:g}", "exclusiveMinimum": "> {:g}", "maximum": "≤ {
 KINDS = {"integer": "whole number", "number": "number", "string": "text", "boolean": "true or false"}
 
 
-def rig_keys_table() -> str:
-    """Every key of a rig file with its values and its default."""
-    return _table(RigTable)
-
-
 def modules_table() -> str:
     """The modules on record, a line for each data sheet."""
     rows = [(f"`{name}`", *figures) for name, *figures in module_rows()]
     return markdown(("name", "face cm²", "plates, J/K each", "hot side °C", *FIGURES[3:]), rows)
-
-
-def device_keys_table() -> str:
-    """Return every key of a device file with its values and its default, as a table of Markdown."""
-    return _table(DeviceTable)
 
 
 def device_quantities_table() -> str:
@@ -60,6 +51,7 @@ def study_keys_table() -> str:
 
 
 def _table(model: type[BaseModel]) -> str:
+    """Every key of a file with its values and its default."""
     schema = model.model_json_schema()
     return markdown(("key", "values", "default"), _rows(schema, schema, ""))
 
@@ -109,9 +101,9 @@ def default_of(value: object) -> str:
 
 KEY_TABLES = {
     "study keys": study_keys_table,
-    "rig keys": rig_keys_table,
+    "rig keys": partial(_table, RigTable),
     "modules": modules_table,
-    "device keys": device_keys_table,
+    "device keys": partial(_table, DeviceTable),
     "device quantities": device_quantities_table,
 }
 """The tables by the names that mark their places in the pages."""

@@ -7,6 +7,10 @@ from contextlib import chdir
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from typer.testing import CliRunner
+
+from thermicon.notebooks.cli.main import app
+
 MARK = re.compile(r"^<!-- picture: (?P<commands>[^|\n]+) \| (?P<alt>[^|\n]+) -->\n", re.MULTILINE)
 """Commands without `thermicon`, with `&&` between them; the last one draws. A code host shows nothing of it."""
 SAVED = re.compile(r"Save as `(?P<name>[\w.-]+)`[^\n]*\n\n```\w*\n(?P<text>.*?)```", re.DOTALL)
@@ -29,10 +33,6 @@ def page_picture(mark: re.Match[str], page: str, kept: Path) -> Path:
 
 
 def _drawn(lines: list[str], saved: dict[str, str]) -> bytes:
-    from typer.testing import CliRunner
-
-    from thermicon.notebooks.cli.main import app
-
     with TemporaryDirectory() as name, chdir(name):
         for file, text in saved.items():
             Path(file).write_text(text, encoding="utf-8")

@@ -72,7 +72,6 @@ class LeftOutRow(OfRow):
 
 
 SCORES, FORMS, LEFT_OUT = "variant-scores.csv", "memory_forms.csv", "left-out.csv"
-FROM_WEIGHTS = "weights"
 
 
 @lru_cache(maxsize=1)
@@ -203,7 +202,7 @@ def scores_sentence() -> str:
     ratios = sorted(each.high / each.low for each in rows if each.row.log)
     compared = [each for each in every if not math.isnan(each.naive)]
     gain = sum(each.log_score - each.naive for each in compared) / len(compared)
-    weighted = dict.fromkeys(each.experiment for each in every if each.method == FROM_WEIGHTS)
+    weighted = dict.fromkeys(each.experiment for each in every if each.method == "weights")
     kinds = ", ".join(f"{count} {kind}s" for kind, count in Counter(each.row.kind for each in rows).items())
     return (
         f"{inside[0]} of {len(rows)} rows ({kinds}) lie inside their 50 % interval and {inside[1]} inside their "

@@ -51,7 +51,9 @@ class Staging:
         """Write every source, and more pages by name; what is as before keeps its time and is not read again."""
         self.written.clear()
         for path in notebooks():
-            self.write(f"start/{path.name}", _notebook(path))
+            text = path.read_text(encoding="utf-8")
+            lexer = '"language_info": {"pygments_lexer": "ipython3",'
+            self.write(f"start/{path.name}", text.replace('"language_info": {', lexer, 1))
         sections = read_sections((ROOT / "docs" / "README.md").read_text(encoding="utf-8"))
         for path in pages():
             where = PurePosixPath(path.relative_to(ROOT).as_posix())
@@ -116,12 +118,6 @@ class Staging:
             return f"{link['before']}{nearer}{link['anchor'] or ''}"
 
         return LINK.sub(replaced, prose)
-
-
-def _notebook(path: Path) -> str:
-    """A tutorial whose cells are coloured as IPython."""
-    text = path.read_text(encoding="utf-8")
-    return text.replace('"language_info": {', '"language_info": {"pygments_lexer": "ipython3",', 1)
 
 
 def _coloured(fence: re.Match[str]) -> str:

@@ -52,8 +52,13 @@ def read_limited(path: Path, most_bytes: int) -> bytes:
     zero byte in the path) as the system does.
     """
     found = path.stat()
-    if (kind := _kind(found.st_mode)) is not None:
-        raise NotRegular(kind)
+    if not stat.S_ISREG(found.st_mode):
+        named: dict[FileKind, bool] = {
+            "folder": stat.S_ISDIR(found.st_mode),
+            "pipe": stat.S_ISFIFO(found.st_mode),
+            "socket": stat.S_ISSOCK(found.st_mode),
+        }
+        raise NotRegular(next((kind for kind, fits in named.items() if fits), "device"))
     if found.st_size > most_bytes:
         raise TooLarge(found.st_size)
     with path.open("rb") as file:
@@ -80,16 +85,6 @@ def bytes_of(path: Path, what: str, suffix: str, most_bytes: int, smaller: str) 
         said = getattr(error, "strerror", None) or error
         help = "check that it is there and that you may read it"
         raise whole_file("E003", str(path), f"the system says: {said}", help) from None
-
-
-def _kind(mode: int) -> FileKind | None:
-    if stat.S_ISREG(mode):
-        return None
-    if stat.S_ISDIR(mode):
-        return "folder"
-    if stat.S_ISFIFO(mode):
-        return "pipe"
-    return "socket" if stat.S_ISSOCK(mode) else "device"
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from typing import Any, cast
 from ..model.context import Metadata
 from ..model.icon import Icon
 from ..model.members import HOLE
-from ..model.parameter import Parameter, Path, Slot, value_fault
+from ..model.parameter import Path, Slot, value_fault
 from ..model.statements import (
     Bound,
     Broken,
@@ -182,18 +182,20 @@ class _Scope:
         if kind is None:
             return "broken", value
         if rule in ("by_use", "to_use"):
-            name = rule[:3] + ("A" if kind == "current" else "C" if kind == "absolute" else "K")
-            slot = name
+            name = slot = rule[:3] + ("A" if kind == "current" else "C" if kind == "absolute" else "K")
         else:
             name = _VALUES[rule]
-            slot = _field(rule_of(tree), name, kind)
+            slot = {"period": "period_s", "time": "duration_s"}.get(name, "rate_per_s")
+            if name == "rate" and rule_of(tree) != "return":
+                slot = "rate_A_per_s" if kind == "current_rate" else "rate_K_per_s"
         self.slots.append(Slot(path, slot, kind, str(part.children[0])))
         return name, value
 
     def use(self, part: Any, tree: Any, signed: bool) -> tuple[Kind | None, float]:
         """Return kind and first value of a parameter where it is used; None and NaN, with a finding, when it fails."""
         token = part.children[0]
-        own = self.parameter(token)
+        own = self.over.named.get(str(token)) if self.over else None
+        self.used.add(str(token))
         if own is None:
             self.broken = True
             return None, float("nan")
@@ -215,13 +217,6 @@ class _Scope:
             self.builder.add(found[0], span(token), what, help)
             return None, float("nan")
         return kind, own.si(0, kind)
-
-    def parameter(self, token: Any) -> Parameter | None:
-        """Return the parameter of this name; None when it could not be read."""
-        name = str(token)
-        known = {} if self.over is None else self.over.named
-        self.used.add(name)
-        return known.get(name)
 
     def repeat(self, tree: Any, path: Path) -> Repeat | None:
         """Return a repeat; an impossible count counts as one, so that its body is checked."""
@@ -249,11 +244,10 @@ class _Scope:
                 help = "put it directly between the braces of the icon"
                 self.builder.add("E229", span(part), "a total concerns the whole icon, not a repeat", help)
         body = tuple(Broken() if isinstance(part, Total) else part for part in body)
-        if not body and getattr(head, "type", "") == "BROKEN":
-            return None
         if not body:
-            what = "there is nothing between the braces of this repeat"
-            self.builder.add("E217", span(tree), what, "put the statements that repeat between them")
+            if getattr(head, "type", "") != "BROKEN":
+                what = "there is nothing between the braces of this repeat"
+                self.builder.add("E217", span(tree), what, "put the statements that repeat between them")
             return None
         return Repeat(count, body, self.builder.at(span(tree)))
 
@@ -272,11 +266,3 @@ class _Scope:
                 place = (start, start + len(hole) + 2)
                 cures = (Patch(*place, f"{{{close}}}"),) if close else ()
                 self.builder.add("E226", place, f'"{short(hole)}" is not a parameter', help, *cures)
-
-
-def _field(rule: str, name: str, kind: Kind) -> str:
-    if name == "rate":
-        if rule == "return":
-            return "rate_per_s"
-        return "rate_A_per_s" if kind == "current_rate" else "rate_K_per_s"
-    return "period_s" if name == "period" else "duration_s"

@@ -1,5 +1,6 @@
 """Conversion of tokens to values in SI units, with an error at the place of each invalid one."""
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -18,6 +19,7 @@ from .source import Finding, Patch, Source
 Place = tuple[int, int]
 _KINDS: dict[str, Kind] = {"signed": "change", "period": "time", "current_change": "current"}
 _TARGETS = ("absolute", "difference", "signed", "current", "current_change", "by_use", "to_use")
+_ESCAPE = re.compile(r"\\(.)")
 _ESCAPES = {"n": "\n", '"': '"', "\\": "\\"}
 _LIST_HELP = 'values are a list, "[1, 3] °C", or a range, "1..3 step 0.5 °C"'
 
@@ -93,26 +95,15 @@ class Builder:
 
     def text(self, token: Any) -> str | None:
         """Return a quoted text without quotes and escapes; None, with a finding, when it is not valid."""
-        start = span(token)[0]
-        out: list[str] = []
         inner = str(token)[1:-1]
-        index = 0
-        while index < len(inner):
-            char = inner[index]
-            if char == "\\":
-                index += 1
-                if inner[index] not in _ESCAPES:
-                    place = (start + index, start + index + 2)
-                    help = 'in a text, \\" \\\\ and \\n stand for a quotation mark, a backslash and a new line'
-                    self.add("E112", place, f'"\\{inner[index]}" means nothing', help, Patch(place[0], place[0], "\\"))
-                    return None
-                char = _ESCAPES[inner[index]]
-            out.append(char)
-            index += 1
-        text = "".join(out)
-        wrong = text_fault(text) if text.strip() else None
-        if wrong:
-            self.add("E105", span(token), wrong, "remove it")
+        if wrong := next((escape for escape in _ESCAPE.finditer(inner) if escape[1] not in _ESCAPES), None):
+            start = span(token)[0] + 1 + wrong.start()
+            help = 'in a text, \\" \\\\ and \\n stand for a quotation mark, a backslash and a new line'
+            self.add("E112", (start, start + 2), f'"{wrong[0]}" means nothing', help, Patch(start, start, "\\"))
+            return None
+        text = _ESCAPE.sub(lambda escape: _ESCAPES[escape[1]], inner)
+        if text.strip() and (found := text_fault(text)):
+            self.add("E105", span(token), found, "remove it")
             return None
         return text
 

@@ -11,6 +11,11 @@ from .failed_statement import FailedStatement, at, short, signed, swap
 from .source import Finding, Patch
 
 _CURLY = re.compile(r"[”“»«’‘'](?!\w)")
+_HOMES = {
+    "icon": "belongs inside the braces of an icon",
+    "set": "belongs inside the braces of the set",
+    "file": "belongs outside of every block",
+}
 _NAME_HELP = "a name has letters, digits and hyphens and begins with a letter, such as cooling-step"
 
 
@@ -117,9 +122,8 @@ def opening(case: FailedStatement) -> Finding | None:
     cures = [swap(bad, close)] if close else []
     if case.where == "set":
         return at(bad, "E216", f'"{short(bad.text)}" is not a setting', f"settings are: {', '.join(known)}", *cures)
-    home = _home(bad.text)
-    what = f'"{short(bad.text)}" {"belongs " + home if home else "is not understood"}'
-    return at(bad, "E101", what, _examples(case.where), *cures)
+    said = next((home for block, home in _HOMES.items() if bad.text in VOCABULARY[block]), "is not understood")
+    return at(bad, "E101", f'"{short(bad.text)}" {said}', _examples(case.where), *cures)
 
 
 def block(case: FailedStatement) -> Finding | None:
@@ -156,14 +160,6 @@ def name(case: FailedStatement) -> Finding | None:
         return at(bad, "E113", f'a name is missing after "{case.first}"', _NAME_HELP)
     what = "a name has no quotation marks" if bad.kind == "text" else f'"{short(bad.text)}" is not a name'
     return at(bad, "E113", what, _NAME_HELP, swap(bad, plain))
-
-
-def _home(word: str) -> str:
-    if word in VOCABULARY["icon"]:
-        return "inside the braces of an icon"
-    if word in VOCABULARY["set"]:
-        return "inside the braces of the set"
-    return "outside of every block" if word in VOCABULARY["file"] else ""
 
 
 def _examples(where: str) -> str:

@@ -17,7 +17,12 @@ def family(case: FailedStatement) -> Finding | None:
     """Faults between the parentheses of a family, or around them."""
     bad = case.bad
     if not case.listing:
-        return _around(case)
+        if case.first != "icon" or "LBRACE" not in case.accepts or bad.text not in ("(", *_OPENERS):
+            return None
+        if "LPAR" in case.accepts:
+            what = f'parameters are written in "( ... )", not in "{bad.text}"'
+            return at(bad, "E118", what, _HELP, swap(bad, "("))
+        return at(bad, "E118", "parameters come directly after the name of the icon", 'icon x(...) means "..." {')
     if bad.kind == "newline":
         here = case.before or bad
         return at(here, "E118", "a parameter is on one line", "break the line after a comma")
@@ -25,16 +30,6 @@ def family(case: FailedStatement) -> Finding | None:
         if terminal in case.accepts:
             return rule(case)
     return at(bad, "E118", f'"{short(bad.text)}" does not fit here', _HELP)
-
-
-def _around(case: FailedStatement) -> Finding | None:
-    bad = case.bad
-    if case.first != "icon" or "LBRACE" not in case.accepts or bad.text not in ("(", *_OPENERS):
-        return None
-    if "LPAR" in case.accepts:
-        what = f'parameters are written in "( ... )", not in "{bad.text}"'
-        return at(bad, "E118", what, _HELP, swap(bad, "("))
-    return at(bad, "E118", "parameters come directly after the name of the icon", 'icon x(...) means "..." {')
 
 
 def _name(case: FailedStatement) -> Finding:
@@ -136,17 +131,13 @@ def _more(case: FailedStatement) -> Finding:
     whole = Patch(case.pieces[first].start, numbers[-1].end, f"[{_listed(numbers)}")
     if bad.kind == "number":
         return at(bad, "E118", "a comma is missing between these values", _HELP, whole)
-    if bad.text in (")", *_CLOSERS):
-        return at(bad, "E118", f'a list ends with "]", not with "{bad.text}"', _HELP, *_closed(case))
     before = case.pieces[case.index - 1]
+    if bad.text in (")", *_CLOSERS):
+        # ")" closes the list by mistake, or the list is open and ")" closes the parentheses.
+        cures = [swap(bad, "]"), Patch(before.end, before.end, "]")][: 2 if bad.text == ")" else 1]
+        return at(bad, "E118", f'a list ends with "]", not with "{bad.text}"', _HELP, *cures)
     what = f'"]" is missing before "{short(bad.text)}"' if bad.text else '"]" is missing here'
     return at(bad, "E118", what, _HELP, Patch(before.end, before.end, "]"))
-
-
-def _closed(case: FailedStatement) -> tuple[Patch, ...]:
-    # ")" closes the list by mistake, or the list is open and ")" closes the parentheses.
-    bad, before = case.bad, case.pieces[case.index - 1]
-    return (swap(bad, "]"), Patch(before.end, before.end, "]")) if bad.text == ")" else (swap(bad, "]"),)
 
 
 def _unit_inside(case: FailedStatement, first: int) -> Finding:

@@ -1,6 +1,6 @@
 """The formatter: cue text in canonical layout, one statement per line."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 from ..model.arguments import checked
 from ..model.format import header_lines
@@ -48,25 +48,14 @@ def format_text(text: str | bytes, file: str = "<text>") -> str:
     }
     """
     parse(text, file)
-    layout = _Layout()
-    for kind, word in _items(Source(file, decode(text, file)).text):
-        layout.take(kind, word)
-    return "\n".join(layout.lines) + "\n"
-
-
-def _items(text: str) -> Iterator[Item]:
-    """Yield kind and canonical spelling of every token of a sound text, and of the comments between them."""
-    end = 0
-    for token in grammar().parse_interactive(text).iter_parse():
-        if comment := text[end : token.start_pos].strip():
-            yield "COMMENT", comment
-        word = str(token)
-        if token.type == "NUMBER":
-            word = tidy_number(word)
-        elif token.type in _UNITS:
-            word = word.replace("degC", "°C")
-        yield token.type, word
+    layout, whole, end = _Layout(), Source(file, decode(text, file)).text, 0
+    for token in grammar().parse_interactive(whole).iter_parse():
+        if comment := whole[end : token.start_pos].strip():
+            layout.take("COMMENT", comment)
+        word = str(token).replace("degC", "°C") if token.type in _UNITS else str(token)
+        layout.take(token.type, tidy_number(word) if token.type == "NUMBER" else word)
         end = token.end_pos or 0
+    return "\n".join(layout.lines) + "\n"
 
 
 def tidy_number(text: str) -> str:

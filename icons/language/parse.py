@@ -1,11 +1,11 @@
 """The parser: cue text to an icon set or to all its errors, each with a corrected line that was tested."""
 
 from ..model.arguments import checked
-from ..model.errors import MOST_ERRORS, CueError, CueErrors, whole_file
+from ..model.errors import MOST_ERRORS, CueErrors, whole_file
 from ..model.iconset import IconSet
 from .assemble import analyse
 from .recover import other_format
-from .source import Finding, Patch, Source, decode
+from .source import Finding, Source, decode
 
 # Suggestions cost a parse each; beyond this many characters read again, errors come without one.
 _TRIES = 150_000
@@ -58,19 +58,16 @@ def parse(text: str | bytes, file: str = "<text>") -> IconSet:
         return analysis.icons
     findings = analysis.findings[:MOST_ERRORS]
     more = analysis.more + len(analysis.findings) - len(findings)
-    raise CueErrors(_Suggester(source, len(findings) + more).errors(findings), more)
+    cured = _Suggester(len(findings) + more).cured
+    raise CueErrors(tuple(source.error(finding, cured(source, finding, 0)) for finding in findings), more)
 
 
 class _Suggester:
     """Tries cures out until their budget of characters is spent."""
 
-    def __init__(self, source: Source, count: int) -> None:
-        self.source = source
+    def __init__(self, count: int) -> None:
         self.count = count
         self.budget = _TRIES
-
-    def errors(self, findings: tuple[Finding, ...]) -> tuple[CueError, ...]:
-        return tuple(self.source.error(finding, self.cured(self.source, finding, 0)) for finding in findings)
 
     def cured(self, source: Source, finding: Finding, depth: int) -> str | None:
         """Return the corrected line, or None: no cure leaves the line without an error and the file no worse."""
@@ -80,7 +77,8 @@ class _Suggester:
         for cure in finding.cures:
             if self.budget < len(source.text):
                 return None
-            if not _within(source, cure, line) or (depth and "\n" in cure.text):
+            elsewhere = source.place(cure.start)[0] != line or "\n" in source.text[cure.start : cure.end]
+            if elsewhere or (depth and "\n" in cure.text):
                 continue
             self.budget -= len(source.text)
             text = source.text[: cure.start] + cure.text + source.text[cure.end :]
@@ -95,7 +93,3 @@ class _Suggester:
             if not done and (deeper := self.cured(tried, left[0], depth + 1)) is not None:
                 return deeper
         return None
-
-
-def _within(source: Source, cure: Patch, line: int) -> bool:
-    return source.place(cure.start)[0] == line and "\n" not in source.text[cure.start : cure.end]

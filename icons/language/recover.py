@@ -6,6 +6,7 @@ from functools import cache, lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
+from ..kinds_of_files import other_kind
 from ..model.errors import MOST_ERRORS, MOST_READ
 from ..model.words import VOCABULARY
 from .diagnose import diagnose
@@ -48,8 +49,6 @@ def other_format(source: Source) -> tuple[str, str] | None:
     head = "".join(row[:_WIDE].strip() for row in rows).casefold()
     if head.startswith("cue"):
         return None
-    from ..kinds_of_files import other_kind
-
     if found := other_kind(source.text, "cue file"):
         return found
     what = next((what for mark, what in _FORMATS.items() if head.startswith(mark)), None)
@@ -97,7 +96,10 @@ class _Reader:
             if self.runs_on(token) or self.unnamed(token):
                 self.recover(start)
             elif token.type == "LBRACE" and len(self.blocks) >= DEEPEST:
-                self.refuse_depth(start)
+                what = f"blocks are nested more than {DEEPEST} deep"
+                self.report(Finding("E115", start, start + 1, what, "repeat counts multiply: merge inner repeats"))
+                self.feed("LBRACE", "BROKEN", "RBRACE", at=start)
+                self.jump(min(self.source.close(start) + 1, len(self.text) - 1))
             else:
                 try:
                     self.parser.feed_token(token)
@@ -159,11 +161,6 @@ class _Reader:
     def jump(self, offset: int) -> None:
         self.parser.lexer_thread.state.line_ctr.char_pos = offset
         self.tokens = self.parser.lexer_thread.lex(self.parser.parser_state)
-
-    def called(self) -> str:
-        """Return the name in a header that could not be read, so that a ``play`` of it draws no further error."""
-        found = _NAMED.match(self.text, self.begin)
-        return found[1] if found else ""
 
     def feed(self, *kinds: str, at: int, text: str = "") -> None:
         from lark import Token
@@ -247,7 +244,9 @@ class _Reader:
         self.listing = False
         brace = stop < len(self.text) and self.text[stop] == "{"
         if header:
-            self.feed("BROKEN", at=self.begin, text=self.called())
+            # A name that can be read stays, so that a ``play`` of it draws no further error.
+            named = _NAMED.match(self.text, self.begin)
+            self.feed("BROKEN", at=self.begin, text=named[1] if named else "")
             if not brace and self.text[self.begin : stop].rstrip().endswith("{"):
                 self.feed("LBRACE", at=stop - 1)  # swallowed by a text that was never closed
             elif not brace:
@@ -277,19 +276,9 @@ class _Reader:
             state.value_stack.pop()
         return not self.takes("SEMICOLON")  # headers may go on over line ends, statements end there
 
-    def accepts(self) -> frozenset[str]:
-        """Return the kinds of tokens that the parser could take now."""
-        return _accepted(tuple(self.parser.parser_state.state_stack))
-
     def takes(self, kind: str) -> bool:
         """Tell whether the parser could take a token of this kind now."""
         return _takes(self.parser.parser_state.state_stack, kind)
-
-    def refuse_depth(self, brace: int) -> None:
-        what = f"blocks are nested more than {DEEPEST} deep"
-        self.report(Finding("E115", brace, brace + 1, what, "repeat counts multiply: merge inner repeats"))
-        self.feed("LBRACE", "BROKEN", "RBRACE", at=brace)
-        self.jump(min(self.source.close(brace) + 1, len(self.text) - 1))
 
     def finish(self) -> None:
         end = len(self.text) - 1
@@ -326,7 +315,8 @@ class _Reader:
         if len(self.findings) >= MOST_ERRORS:
             self.more += 1
             return ""
-        finding = diagnose(FailedStatement(pieces, index, at, self.accepts(), where, self.names, self.listing))
+        accepts = _accepted(tuple(self.parser.parser_state.state_stack))
+        finding = diagnose(FailedStatement(pieces, index, at, accepts, where, self.names, self.listing))
         self.findings.append(finding)
         return finding.code
 

@@ -83,7 +83,8 @@ def survey(
             key=lambda part: corner_count([part]),
             default=None,
         )
-        what = f"written out, this icon has {_count(corners)} corners"
+        many = f"{corners:,}" if corners < 10**15 else "more than 10^15"
+        what = f"written out, this icon has {many} corners"
         part = "count" if isinstance(worst, Repeat) else "whole"
         return Survey([Problem(worst, "E220", part, what, f"an icon has at most {MOST_CORNERS:,} corners")])
     walker = _Walker(control, rest, played={} if played is None else played)
@@ -155,9 +156,15 @@ class _Walker:
         if not self.fits(part):
             return None, Fraction(0)
         if isinstance(part, Wave) and not part.cut and not whole_periods(part):
-            self.blame(part, "E225", "time", *_not_whole(part))
+            period, lasts = exact(part.period_s, "time"), exact(part.duration_s, "time")
+            near = f"{decimal_text(float(max(1, round(lasts / period)) * period))} s"
+            what = f"{float(lasts):.6g} s hold {float(lasts / period):.4g} periods of {float(period):.6g} s"
+            help = f'whole periods last, for example, {near}; to stop within one, add "cut"'
+            self.blame(part, "E225", "time", what, help, ("time", near))
         if level is None or self.rest is None:
-            return self.blind(part), Fraction(0)
+            # Behind a statement that could not be read only an absolute target tells where the icon is.
+            known = self.rest if isinstance(part, Return) else advance_blind(part) if absolute([part]) else None
+            return known, Fraction(0)
         self.side(part, level, self.rest)
         target, duration = advance(part, level, self.rest)
         low, high = (-HIGHEST_A, HIGHEST_A) if self.control == "current" else (LOWEST_C, HIGHEST_C)
@@ -217,12 +224,6 @@ class _Walker:
                     help = f"a total is checked, nothing is filled up or cut: {few}"
                     self.found.append(Problem(part, "E222", "time", what, help, (("time", text),), float(abs(off))))
 
-    def blind(self, part: Leaf) -> Fraction | None:
-        # Behind a statement that could not be read only an absolute target tells where the icon is.
-        if isinstance(part, Return):
-            return self.rest
-        return advance_blind(part) if absolute([part]) else None
-
     def side(self, part: Leaf, level: Fraction, rest: Fraction) -> None:
         unit = "A" if self.control == "current" else "°C"
         if isinstance(part, Ramp | Step) and part.to_C is not None:
@@ -271,17 +272,3 @@ def absolute(body: Sequence[Statement | Broken]) -> bool:
         or (isinstance(part, Repeat) and absolute(part.body))
         for part in body
     )
-
-
-def _not_whole(wave: Wave) -> tuple[str, str, tuple[str, str]]:
-    """What is wrong with a duration that holds no whole periods, what would be right, and the cure."""
-    period, duration = exact(wave.period_s, "time"), exact(wave.duration_s, "time")
-    periods = duration / period
-    near = max(1, round(periods)) * period
-    text = f"{decimal_text(float(near))} s"
-    what = f"{float(duration):.6g} s hold {float(periods):.4g} periods of {float(period):.6g} s"
-    return what, f'whole periods last, for example, {text}; to stop within one, add "cut"', ("time", text)
-
-
-def _count(number: int) -> str:
-    return f"{number:,}" if number < 10**15 else "more than 10^15"

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import reduce
+from itertools import chain
 from pathlib import Path
 from typing import overload
 
@@ -52,11 +53,7 @@ class Members(Sequence[Icon]):
         raise IndexError(f"there is no icon at {index}: the set has {len(self)}")
 
     def __iter__(self) -> Iterator[Icon]:
-        for entry in self.entries:
-            if isinstance(entry, Family):
-                yield from entry
-            else:
-                yield entry
+        return chain.from_iterable(entry if isinstance(entry, Family) else (entry,) for entry in self.entries)
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -74,8 +74,11 @@ def pieces(leaf: Leaf, level: Fraction, rest: Fraction, tolerance: float = TOLER
 def reach(leaf: Leaf, level: Fraction, rest: Fraction) -> tuple[Fraction, Fraction]:
     """Return the lowest and highest level (°C or A) that a statement comes to, its first level included."""
     if isinstance(leaf, Wave):
-        least, most = _wave_reach(leaf)
-        size = amplitude(leaf) * leaf.sign
+        least, most, size = Fraction(-1), Fraction(1), amplitude(leaf) * leaf.sign
+        if leaf.cut:
+            periods, value = periods_of(leaf), _cut_value(leaf)
+            least = least if periods > _TROUGH[leaf.shape] else min(Fraction(0), value)
+            most = most if periods > _CREST[leaf.shape] else max(Fraction(0), value)
         ends = level + size * least, level + size * most
         return min(ends), max(ends)
     levels = [level, *(to for to, _ in pieces(leaf, level, rest))]
@@ -85,7 +88,10 @@ def reach(leaf: Leaf, level: Fraction, rest: Fraction) -> tuple[Fraction, Fracti
 def piece_count(leaf: Leaf) -> int:
     """Return how many straight pieces and steps a statement has at most, a sine within `TOLERANCE`."""
     if isinstance(leaf, Wave):
-        return math.ceil(periods_of(leaf)) * _period_corners(leaf.shape, _ratio(leaf, TOLERANCE))
+        # Of a sine they grow with the root of the amplitude over the tolerance: in theory 4 · 1.2 / √(12 · ratio) =
+        # 1.4 / √ratio a period; counts that grow by eighths make it 1.65 / √ratio and a few.
+        sine = math.ceil(2.1 / math.sqrt(_ratio(leaf, TOLERANCE))) + 8
+        return math.ceil(periods_of(leaf)) * (sine if leaf.shape == "sine" else len(one_period(leaf.shape, 0.0)))
     return 3 if isinstance(leaf, Pulse) else 1
 
 
@@ -178,21 +184,6 @@ def _wave_points(wave: Wave, tolerance: float) -> Iterator[Point]:
                 yield periods, _cut_value(wave)
                 return
             yield n + phase, value
-
-
-def _period_corners(shape: Shape, ratio: float) -> int:
-    """Corners of one period, at most; those of a sine grow with the root of the amplitude over the tolerance."""
-    # In theory 4 · 1.2 / √(12 · ratio) = 1.4 / √ratio; counts that grow by eighths make it 1.65 / √ratio and a few.
-    return math.ceil(2.1 / math.sqrt(ratio)) + 8 if shape == "sine" else len(one_period(shape, 0.0))
-
-
-def _wave_reach(wave: Wave) -> tuple[Fraction, Fraction]:
-    """Lowest and highest value (±1) of a wave that starts upwards."""
-    periods, value = periods_of(wave), _cut_value(wave)
-    if not wave.cut:
-        return Fraction(-1), Fraction(1)
-    lowest = Fraction(-1) if periods > _TROUGH[wave.shape] else min(Fraction(0), value)
-    return lowest, Fraction(1) if periods > _CREST[wave.shape] else max(Fraction(0), value)
 
 
 def _cut_value(wave: Wave) -> Fraction:

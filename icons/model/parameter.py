@@ -54,15 +54,12 @@ class Parameter:
             raise ValueError(f"parameter {self.name} has one value twice")
         if self.span is not None and (wrong := span_fault(*self.span)):
             raise ValueError(f"parameter {self.name}: {wrong}")
-        object.__setattr__(self, "numbers", self._numbers())
-
-    def _numbers(self) -> tuple[tuple[int, ...], int, int]:
         # Whole numbers over one power of ten: dividing two whole numbers gives the float nearest to the decimal.
         parts = [exact_number(decimal_text(value)) for value in self.span or self.listed]
         power = next(10**n for n in range(1100) if all((part * 10**n).denominator == 1 for part in parts))
         whole = tuple(int(part * power) for part in parts)
         count = len(whole) if self.span is None else (whole[1] - whole[0]) // whole[2] + 1
-        return whole, power, count
+        object.__setattr__(self, "numbers", (whole, power, count))
 
     def __len__(self) -> int:
         return self.numbers[2]

@@ -31,8 +31,7 @@ class Ramp:
     span: Span = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if self.direction not in get_args(Heading):
-            raise ValueError(f'Ramp.direction must be "warm", "cool" or "change", not {self.direction!r}')
+        _prove_heading(self)
         prove_one_of(self, "by_K", "to_C")
         prove_one_of(self, "rate_K_per_s", "duration_s")
         size: Kind = "change" if self.direction == "change" else "difference"
@@ -105,10 +104,9 @@ class Step:
 
     def __post_init__(self) -> None:
         prove_one_of(self, "by_K", "to_C", "by_A", "to_A")
-        _prove_heading(self, self.direction, self.by_A is not None or self.to_A is not None)
-        prove(self, by_K="change" if self.direction == "change" else "difference", to_C="absolute")
-        _prove_current_change(self, self.by_A)
-        prove(self, by_A="current", to_A="current")
+        _prove_heading(self)
+        size: Kind = "change" if self.direction == "change" else "difference"
+        prove(self, by_K=size, to_C="absolute", by_A="current", to_A="current")
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,10 +121,8 @@ class Pulse:
 
     def __post_init__(self) -> None:
         prove_one_of(self, "by_K", "by_A")
-        _prove_heading(self, self.direction, self.by_A is not None)
-        prove(self, by_K="change" if self.direction == "change" else "difference")
-        _prove_current_change(self, self.by_A)
-        prove(self, by_A="current")
+        _prove_heading(self)
+        prove(self, by_K="change" if self.direction == "change" else "difference", by_A="current")
         prove_given(self, duration_s="time")
 
 
@@ -227,13 +223,11 @@ Leaf = Ramp | Current | Hold | Rest | Return | Total | Step | Pulse | Wave
 Statement = Leaf | Repeat | Play
 
 
-def _prove_heading(owner: object, direction: str, current: bool) -> None:
-    if direction not in get_args(Heading):
-        raise ValueError(f'{type(owner).__name__}.direction must be "warm", "cool" or "change", not {direction!r}')
-    if current and direction != "change":
-        raise ValueError(f'{type(owner).__name__}: a current is changed, not "{direction}"ed')
-
-
-def _prove_current_change(owner: object, by_A: float | None) -> None:
+def _prove_heading(owner: Ramp | Step | Pulse) -> None:
+    name, by_A, to_A = type(owner).__name__, getattr(owner, "by_A", None), getattr(owner, "to_A", None)
+    if owner.direction not in get_args(Heading):
+        raise ValueError(f'{name}.direction must be "warm", "cool" or "change", not {owner.direction!r}')
+    if owner.direction != "change" and (by_A is not None or to_A is not None):
+        raise ValueError(f'{name}: a current is changed, not "{owner.direction}"ed')
     if by_A == 0:
-        raise ValueError(f"{type(owner).__name__}.by_A = 0: a change must not be zero")
+        raise ValueError(f"{name}.by_A = 0: a change must not be zero")

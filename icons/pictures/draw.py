@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..model.corners import Corners
-    from ..model.units import Control
 
 Direction = Literal["cool", "warm", "stay"]
 # Dark blue and light orange stay apart in grey and for all common kinds of colour vision.
@@ -48,9 +47,10 @@ def plot(drawn: Drawn, ax: Axes | None = None) -> Axes:
     if isinstance(drawn, Family):
         places = chosen(tuple(map(len, drawn.parameters)), MOST_DRAWN)
         members = [drawn[place] for place in places]
-        labels = [member.name.partition("_")[2].replace("_", ", ").replace("=", " = ") for member in members]
-        for own in drawn.parameters:
-            labels = [_with_unit(label, own.name, own.unit) for label in labels]
+        units = {own.name: own.unit for own in drawn.parameters}
+        named = ([part.partition("=") for part in member.name.split("_")[1:]] for member in members)
+        labels = [", ".join(f"{name} = {value} {units[name]}".strip() for name, _, value in each) for each in named]
+        labels = [label.replace("= -", "= −") for label in labels]
         more = f", {len(members)} drawn" if len(members) < len(drawn) else ""
         return _overlay(members, labels, f"{_short(drawn.name)}: {icon_count(len(drawn))}{more}", ax)
     if isinstance(drawn, IconSet):
@@ -110,6 +110,7 @@ def chosen(sizes: Sequence[int], most: int) -> list[int]:
 
 def _overlay(icons: Sequence[Icon], labels: Sequence[str], title: str, ax: Axes | None) -> Axes:
     """Draw icons of one context over one another, by name where there are few; one without labels by direction."""
+    from matplotlib.collections import LineCollection
     from matplotlib.figure import Figure
 
     named = 0 < len(labels) <= MOST_NAMED
@@ -127,31 +128,13 @@ def _overlay(icons: Sequence[Icon], labels: Sequence[str], title: str, ax: Axes 
             line.set_linestyle(_DASHES[place % len(_DASHES)])
             line.set_label(_short(labels[place], 32))
         else:
-            _directed(ax, corners, *((1.3, 0.75) if labels else (2.5, 1.0)))
-    _finish(ax, icons[0].context.control, all_corners, title)
-    if named:
-        legend = ax.legend(frameon=not own, fontsize=8, handlelength=3.2)
-        if own:  # beside the curves, where constrained layout keeps room for it
-            legend.set_loc("center left")
-            legend.set_bbox_to_anchor((1.01, 0.5))
-        for text in legend.get_texts():
-            text.set_parse_math(False)
-    return ax
-
-
-def _directed(ax: Axes, corners: Corners, width: float, alpha: float) -> None:
-    from matplotlib.collections import LineCollection
-
-    pieces = list(pairwise(zip(corners.time_s, corners.value, strict=True)))
-    steps = set(corners.steps)
-    widths = [width * (0.6 if n in steps else 1.0) for n in range(len(pieces))]
-    colours = [COLOURS[way] for way in directions(corners)]
-    ax.add_collection(
-        LineCollection(pieces, colors=colours, linewidths=widths, capstyle="round", alpha=alpha, zorder=2)
-    )
-
-
-def _finish(ax: Axes, control: Control, all_corners: Sequence[Corners], title: str) -> None:
+            width, alpha = (1.3, 0.75) if labels else (2.5, 1.0)
+            pieces = list(pairwise(zip(corners.time_s, corners.value, strict=True)))
+            widths = [width * (0.6 if n in corners.steps else 1.0) for n in range(len(pieces))]
+            ways = [COLOURS[way] for way in directions(corners)]
+            look: dict[str, Any] = {"colors": ways, "linewidths": widths, "capstyle": "round", "alpha": alpha}
+            ax.add_collection(LineCollection(pieces, zorder=2, **look))
+    control = icons[0].context.control
     low, high = min(corners.lowest for corners in all_corners), max(corners.highest for corners in all_corners)
     half = max(0.6 * (high - low), 0.1 if control == "current" else 1.0)
     longest = max(corners.duration_s for corners in all_corners)
@@ -161,13 +144,14 @@ def _finish(ax: Axes, control: Control, all_corners: Sequence[Corners], title: s
     ax.set_xlabel("time (s)")
     ax.set_ylabel("current (A)" if control == "current" else f"{control} temperature (°C)")
     ax.spines[["top", "right"]].set_visible(False)
-
-
-def _with_unit(label: str, name: str, unit: str) -> str:
-    """Return a label such as ``rate = 1, size = 3`` with the unit behind the value of one parameter."""
-    parts = label.split(", ")
-    parts = [f"{part} {unit}".strip() if part.startswith(f"{name} = ") else part for part in parts]
-    return ", ".join(parts).replace("= -", "= −")
+    if named:
+        legend = ax.legend(frameon=not own, fontsize=8, handlelength=3.2)
+        if own:  # beside the curves, where constrained layout keeps room for it
+            legend.set_loc("center left")
+            legend.set_bbox_to_anchor((1.01, 0.5))
+        for text in legend.get_texts():
+            text.set_parse_math(False)
+    return ax
 
 
 def _short(text: str, most: int = _LONGEST_TITLE) -> str:

@@ -192,7 +192,11 @@ def fit_corners(
     course = course_of(time, reading, tolerance, start)
     path = _sparse(course, _inside(course))
     if len(path[0]) > MOST_CORNERS:
-        raise ValueError(_too_many(reading, tolerance))
+        message = f"{MOST_CORNERS} corners are not enough to stay within {tolerance:g} of every reading"
+        if 3 * (scatter := noise(reading)) > tolerance:
+            try_K = f"so try a tolerance of {float(f'{6 * scatter:.1g}'):g}"
+            message += f"; the readings scatter by about {scatter:.2g} (standard deviation), {try_K}"
+        raise ValueError(message)
     times, values = _rounded(course, _shared(course, path, tolerance), tolerance)
     flat = np.diff(values) == 0
     corner = np.concatenate(([True], ~(flat[1:] & flat[:-1]), [True]))
@@ -290,14 +294,3 @@ def _short(number: float, coarse: int, cost: float, finer: int) -> float:
         (n for n in range(coarse, _MOST_DECIMALS) if abs(round(number, n) - number) <= cost), _MOST_DECIMALS
     )
     return round(number, decimals + finer)
-
-
-def _too_many(reading: Array, tolerance: float) -> str:
-    scatter = noise(reading)
-    message = f"{MOST_CORNERS} corners are not enough to stay within {tolerance:g} of every reading"
-    if 3 * scatter > tolerance:
-        better = float(f"{6 * scatter:.1g}")
-        message += (
-            f"; the readings scatter by about {scatter:.2g} (standard deviation), so try a tolerance of {better:g}"
-        )
-    return message

@@ -177,23 +177,18 @@ def with_edit(text: str, edited: Icon, old: str, new: str) -> str:
     family = reading.family_of(edited.name)
     if family is not None:
         raise CannotEdit(f"{edited.name} is written by the family {family.name}, all of which would change; {by_hand}")
-    for tried in _candidates(text, icon, edited):
+    parts = [part for part in icon.statements if not isinstance(part, Total)]
+    first, candidates = edited.statements[0], list[str]()
+    if isinstance(first, Repeat) and first.body == tuple(parts) and (made := _repeated(text, icon, first.count)):
+        candidates.append(made)
+    edits = list(_numbers(text, icon.statements, edited.statements, icon.context.control))
+    if len(edits) == 1:  # more than one: the text is not the one that the edit was found for
+        candidates.append(replaced(text, dict(edits)))
+    for tried in candidates:
         found = read_text(tried).find(edited.name)
         if found is not None and found.statements == edited.statements:
             return tried
     raise CannotEdit(f"the text has changed, or the edit does not fit it; {by_hand}")
-
-
-def _candidates(text: str, icon: Icon, edited: Icon) -> Iterator[str]:
-    moving = [part for part in icon.statements if not isinstance(part, Total)]
-    first = edited.statements[0]
-    if isinstance(first, Repeat) and first.body == tuple(moving):
-        made = _repeated(text, icon, first.count)
-        if made is not None:
-            yield made
-    edits = list(_numbers(text, icon.statements, edited.statements, icon.context.control))
-    if len(edits) == 1:  # more than one: the text is not the one that the edit was found for
-        yield replaced(text, dict(edits))
 
 
 def _numbers(
@@ -214,8 +209,7 @@ def _numbers(
             value = getattr(new, each.name)
             if not each.compare or value == getattr(old, each.name) or not isinstance(value, float):
                 continue
-            amount = place.amounts.get(keyword_of(old, each.name))
-            if amount is not None:
+            if amount := place.amounts.get(keyword_of(old, each.name)):
                 yield (amount.start, amount.end), amount.exactly(value, kind_of(old, each.name, control))
 
 

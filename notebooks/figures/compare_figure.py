@@ -14,18 +14,14 @@ if TYPE_CHECKING:
 
     from thermicon.circuit import Export
     from thermicon.circuit.arrays import Array
-    from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
-
 
 FIRST = ("skin_C", "display_C", "cold_receptor_C", "warm_receptor_C", "heat_flow_skin_W_per_m2", "current_A")
 COLORS = {"cold_receptor_C": COOL, "warm_receptor_C": WARM}
 LEAST = 0.005
 """The panel of differences shows at least this much to both sides, in its own unit."""
 
-ACROSS = 3
 
-
-def compare_figure(pairs: Sequence[tuple[str, Aligned]], across: int = ACROSS) -> Figure:
+def compare_figure(pairs: Sequence[tuple[str, Aligned]], across: int = 3) -> Figure:
     """Draw comparisons: of one, up to six quantities; of several, one quantity of each under its title.
 
     A is a broad grey line, B a thin one on top; cold receptors are blue, warm ones orange.
@@ -64,7 +60,9 @@ def _shown(both: Aligned, most: int) -> list[str]:
 
 def _pair(above: Axes, below: Axes, both: Aligned, name: str, title: str) -> None:
     a, b = both.columns[name]
-    scale, unit, difference_unit = _units(name)
+    unit = unit_of_difference(name)
+    scale, apart = (1e3, "kW/m²") if unit == "W/m²" else (1.0, unit)
+    unit = "°C" if apart == "K" else apart
     color = COLORS.get(name, INK)
     _draw(above, both.time_s, a / scale, name, color=BROAD, lw=4.0)
     _draw(above, both.time_s, b / scale, name, color=color, lw=1.3)
@@ -73,21 +71,13 @@ def _pair(above: Axes, below: Axes, both: Aligned, name: str, title: str) -> Non
     _draw(below, both.time_s, (b - a) / scale, name, color=color, lw=1.1)
     above.set_title(title or quantity(name), fontsize=10)
     above.set_ylabel(f"{quantity(name)} ({unit})" if title else unit, fontsize=9)
-    below.set_ylabel(f"B − A ({difference_unit})", fontsize=9)
+    below.set_ylabel(f"B − A ({apart})", fontsize=9)
     below.set_xlabel("time (s)", fontsize=9)
     above.sharex(below)
     above.tick_params(labelbottom=False, labelsize=8)
     below.tick_params(labelsize=8)
     below.set_xlim(float(both.time_s[0]), float(both.time_s[-1]))
     plain(above, below)
-
-
-def _units(name: str) -> tuple[float, str, str]:
-    """Divisor, unit of the values and unit of their difference: heat flow is drawn in kW/m²."""
-    unit = unit_of_difference(name)
-    if unit == "W/m²":
-        return 1e3, "kW/m²", "kW/m²"
-    return 1.0, "°C" if unit == "K" else unit, unit
 
 
 def _draw(ax: Axes, time: Array, values: Array, name: str, *, color: str, lw: float) -> None:
@@ -109,7 +99,13 @@ def export_figure(ready: Export, place: int = 0, size: tuple[float, float] = (8.
     axes[0].plot(time_s, delivered.skin_C, color=INK, lw=1.4, label="skin, delivered")
     axes[0].plot(time_s, delivered.display_C, color=GREY, lw=1.1, ls=(0, (6, 2)), label="display, delivered")
     axes[0].set_ylabel("temperature (°C)")
-    _drive_panel(axes[1], delivery)
+    # What the device puts out: current, or the display behind the set-points of a thermode.
+    label, style, wide, thin = "current", "steps-post", designed.current_A, delivered.current_A
+    if not delivered.has_current:
+        label, style, wide, thin = "display", "default", designed.display_C, delivered.display_C
+    axes[1].plot(time_s, wide, color=TARGET, lw=4.0, drawstyle=style, label=f"{label}, designed")
+    axes[1].plot(time_s, thin, color=INK, lw=1.0, drawstyle=style, label=f"{label}, delivered")
+    axes[1].set_ylabel("current (A)" if delivered.has_current else "display (°C)")
     for name, (color, dashes, _) in list(PLACES.items())[1:]:
         column = f"{name.replace(' ', '_')}_C"
         apart = 1e3 * (getattr(delivered, column) - getattr(designed, column))
@@ -118,15 +114,3 @@ def export_figure(ready: Export, place: int = 0, size: tuple[float, float] = (8.
     title = f"{delivery.icon.name} on {delivery.device.name}, safety {one.verdict.colour}"
     on_one_clock(figure, axes, "time on the device's clock (s)", title)
     return figure
-
-
-def _drive_panel(ax: Axes, delivery: DeliveredDrive) -> None:
-    """The device's output: current, or the set-points of a thermode and the display behind them."""
-    designed, delivered = delivery.designed_trace, delivery.trace
-    time_s, label, style = delivered.time_s, "current", "steps-post"
-    wide, thin = designed.current_A, delivered.current_A
-    if not delivered.has_current:
-        label, style, wide, thin = "display", "default", designed.display_C, delivered.display_C
-    ax.plot(time_s, wide, color=TARGET, lw=4.0, drawstyle=style, label=f"{label}, designed")
-    ax.plot(time_s, thin, color=INK, lw=1.0, drawstyle=style, label=f"{label}, delivered")
-    ax.set_ylabel("current (A)" if delivered.has_current else "display (°C)")

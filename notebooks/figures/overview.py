@@ -125,23 +125,13 @@ def felt_overview(trace: Trace, rig_changes: Sequence[str] = ()) -> Figure:
     """Draw the overview of one trace, what is felt included."""
     from thermicon.perception import perceive
 
-    trace = _evenly_timed(trace)
-    return overview(trace, perceive(trace), rig_changes)
-
-
-def _evenly_timed(trace: Trace) -> Trace:
-    """Drop the last row where it comes off the beat, as when a drive ends between two rows."""
     steps = numpy.diff(trace.time_s)
-    if len(steps) < 2 or abs(steps[-1] - steps[0]) < 1e-6 * steps[0]:
-        return trace
-    return dataclasses.replace(
-        trace,
-        **{
-            field.name: getattr(trace, field.name)[:-1]
-            for field in dataclasses.fields(trace)
-            if isinstance(getattr(trace, field.name), numpy.ndarray)
-        },
-    )
+    if len(steps) > 1 and abs(steps[-1] - steps[0]) >= 1e-6 * steps[0]:
+        # The last row comes off the beat, as when a drive ends between two rows.
+        columns = {field.name: getattr(trace, field.name) for field in dataclasses.fields(trace)}
+        cut = {name: column[:-1] for name, column in columns.items() if isinstance(column, numpy.ndarray)}
+        trace = dataclasses.replace(trace, **cut)
+    return overview(trace, perceive(trace), rig_changes)
 
 
 def scene_figure(scene: Scene) -> Figure:

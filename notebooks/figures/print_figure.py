@@ -36,7 +36,7 @@ WIDEST_LABEL, WIDEST_BAR_LABEL = 0.85, 0.7
 """Share of the figure's width that a label of the abscissa, or those of all colour bars, may take in one line."""
 LONGEST_KEY, KEY_PT, MOST_COLUMNS = 30, 9.0, 4
 """Letters of a line in the key below the panels, their size on a screen, and columns at most."""
-EMBEDDED: Mapping[str, Any] = {
+EMBEDDED: Any = {
     "pdf.fonttype": 42, "ps.fonttype": 42, "svg.fonttype": "path", "svg.hashsalt": "thermicon",
 }  # fmt: skip
 COLOURS, WIDEST_PX = 64, 1000
@@ -58,8 +58,7 @@ def write_figure(figure: Figure, path: Path, look: Look = SCREEN) -> None:
     """Write a figure, which is changed, for a screen or for print into a .png, .pdf or .svg file."""
     import matplotlib
 
-    embedded: Any = dict(EMBEDDED)
-    with matplotlib.rc_context(embedded), complete_or_absent(path) as draft:
+    with matplotlib.rc_context(EMBEDDED), complete_or_absent(path) as draft:
         if look.width_mm is not None:
             restyle(figure, look.width_mm)
         kind = path.suffix.lower().removeprefix(".")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .style import COOL, GREY, INK, PLACES, WARM, on_one_clock, skin_limits
+from .style import COOL, GREY, INK, LIMIT, PLACES, WARM, on_one_clock
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,6 +19,9 @@ MOST_NAMED, NAMES_INCHES = 16, 0.8
 
 FELT_K = 0.1
 """Changes of the skin below this get no bar."""
+
+NEAR_K = 6.0
+"""Limits of the skin that are nearer than this to what is drawn get a line."""
 
 
 def session_figure(session: Session) -> Figure:
@@ -76,4 +79,10 @@ def _temperatures(session: Session, ax: Axes, scale: float) -> None:
         drawn = getattr(trace, f"{name.replace(' ', '_')}_C")
         ax.plot(trace.time_s * scale, drawn, color=color, ls=dashes, lw=0.8 * width, label=name)
     ax.set_ylabel("temperature (°C)")
-    skin_limits(ax, session)
+    low, high = ax.get_ylim()
+    for rule in session.limits.rules:
+        if rule.quantity == "skin surface" and not rule.relative and low - NEAR_K < rule.limit < high + NEAR_K:
+            thick, line = (1.4, "-") if rule.severity == "hard" else (0.9, (0, (4, 3)))
+            ax.axhline(
+                rule.limit, color=LIMIT, lw=thick, ls=line, label=f"{rule.severity} limit of skin, {rule.limit:g} °C"
+            )

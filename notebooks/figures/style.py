@@ -5,15 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from ..messages import usage
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from thermicon.circuit import Session
 
 COOL, WARM = "#2166ac", "#e08214"
 BROAD = "#b9bec4"
@@ -26,8 +24,6 @@ PLACES: dict[str, tuple[str, Any, float]] = {
     "warm receptor": (WARM, "--", 1.4),
 }
 """Colour, dashes and width of what is measured at each place: dashes differ too, so that it can be printed in grey."""
-NEAR_K = 6.0
-"""Limits of the skin that are nearer than this to what is drawn get a line."""
 MM = {"mm": 1.0, "cm": 10.0, "in": 25.4}
 NARROWEST_MM, WIDEST_MM = 40.0, 500.0
 """Below, labels are wider than panels; above, no printer takes it."""
@@ -73,10 +69,10 @@ def read_width_mm(text: str) -> float:
     return width
 
 
-def plain(*axes: Axes, grid: Literal["both", "x"] = "both") -> None:
+def plain(*axes: Axes) -> None:
     """Give axes a faint grid, and no frame at the top and at the right."""
     for ax in axes:
-        ax.grid(axis=grid, alpha=0.25, linewidth=0.6)
+        ax.grid(alpha=0.25, linewidth=0.6)
         ax.spines[["top", "right"]].set_visible(False)
 
 
@@ -90,13 +86,3 @@ def on_one_clock(figure: Figure, axes: Sequence[Axes], time: str, title: str) ->
     axes[-1].set_xlabel(time)
     figure.align_ylabels(list(axes))
     figure.suptitle(title, fontsize=11, wrap=True)
-
-
-def skin_limits(ax: Axes, session: Session) -> None:
-    """Draw the limits of the skin that are near to what is drawn: hard ones as lines, others dashed."""
-    low, high = ax.get_ylim()
-    for rule in session.limits.rules:
-        if rule.quantity == "skin surface" and not rule.relative and low - NEAR_K < rule.limit < high + NEAR_K:
-            width, dashes = (1.4, "-") if rule.severity == "hard" else (0.9, (0, (4, 3)))
-            label = f"{rule.severity} limit of skin, {rule.limit:g} °C"
-            ax.axhline(rule.limit, color=LIMIT, lw=width, ls=dashes, label=label)

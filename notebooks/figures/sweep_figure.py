@@ -87,8 +87,11 @@ def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
             ax.set_ylim(top=100.5)
         elif what or columns == ("largest_miss_K",):
             ax.set_ylim(bottom=0.0)
-        if log:
-            _ticks_at_values(ax, values)
+        if log:  # ticks at the values, of many at every second or so
+            named = values[:: -(-len(values) // MOST_TICKS)]
+            ax.set_xscale("log")
+            ax.set_xticks(named, [f"{value:.3g}" for value in named])
+            ax.set_xticks([], minor=True)
         elif turned:
             ax.set_xticks(range(len(values)), [*frame[key].unique()], rotation=30, ha="right", rotation_mode="anchor")
     for name in [name for name in (INTERVAL, MISSED) if name in handles]:
@@ -137,14 +140,6 @@ def _small_multiples(count: int, across: int) -> tuple[Figure, list[Axes]]:
         ax.tick_params(labelsize=8, labelbottom=place >= count - across)
         plain(ax)
     return figure, axes[:count]
-
-
-def _ticks_at_values(ax: Axes, values: list[float]) -> None:
-    """Equal ratios, with ticks at the values, of many at every second or so."""
-    ax.set_xscale("log")
-    named = values[:: -(-len(values) // MOST_TICKS)]
-    ax.set_xticks(named, [f"{value:.3g}" for value in named])
-    ax.set_xticks([], minor=True)
 
 
 def _draw(

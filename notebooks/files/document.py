@@ -18,7 +18,6 @@ from .versions import Version, Versions
 
 MOST_BYTES = 4_000_000
 """Bytes of a file that is opened for editing; the editor takes a million letters."""
-CHANGED_CURE = "open it again to see it, or save your text under another name"
 MOST_STEPS = 200
 MERGED_S = 0.8
 """Typing goes on as one step while the pauses are shorter than this."""
@@ -68,15 +67,11 @@ class History:
 
     def undo(self) -> History:
         """One step back; the history as it is where there is none."""
-        if not self.past:
-            return self
-        return History(self.past[-1], self.past[:-1], (*self.future, self.now))
+        return History(self.past[-1], self.past[:-1], (*self.future, self.now)) if self.past else self
 
     def redo(self) -> History:
         """One step forward again; the history as it is where there is none."""
-        if not self.future:
-            return self
-        return History(self.future[-1], (*self.past, self.now), self.future[:-1])
+        return History(self.future[-1], (*self.past, self.now), self.future[:-1]) if self.future else self
 
     def _with(self, new: HistoryStep, kind: Kind, now_s: float | None, goes_on: bool) -> History:
         if new == self.now:
@@ -164,7 +159,8 @@ class Document:
         if self._changed_on_disk():
             gone = self.path is not None and not self.path.exists()
             happened = "was removed" if gone else "has changed"
-            cure = "Save as writes your text to a file again" if gone else CHANGED_CURE
+            cure = "open it again to see it, or save your text under another name"
+            cure = "Save as writes your text to a file again" if gone else cure
             return f"{self.name} {happened} on disk since it was opened here: {cure}"
         return "" if self.versions.failed is None else f"unsaved text is not kept: {self.versions.failed}"
 

@@ -3,7 +3,7 @@
 import os
 import secrets
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import accumulate
 from pathlib import Path
 from threading import RLock, Timer
@@ -32,7 +32,7 @@ class Version:
     text: str
     at_s: Annotated[float, Field(ge=0, le=LATEST_S)]
     icon: str | None = None
-    editor: str = field(default="")
+    editor: str = ""
 
     @property
     def age(self) -> str:
@@ -90,13 +90,11 @@ class Versions:
 
     def keep(self, *versions: Version) -> None:
         """Add versions, and write what is unsaved now."""
-        with self._lock:
-            self._write(add=versions)
+        self._write(add=versions)
 
     def drop(self, version: Version) -> None:
         """Remove a version."""
-        with self._lock:
-            self._write(drop=version)
+        self._write(drop=version)
 
     def _write(self, add: tuple[Version, ...] = (), drop: Version | None = None) -> None:
         with self._lock:

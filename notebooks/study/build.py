@@ -157,12 +157,19 @@ def make_plan(materials: Materials, bar: ProgressBar, say: Callable[[str], None]
         f"planned: {count_of(len(labels_of(study)), 'participant', 'participants')}, {plays} plays each, about "
         f"{minutes:.0f} min each, gap {gap.gap_s:g} s: {gap.reason}; judging drives and sessions …"
     )
-    rig = _whole_session(rig, plays, mean_s, gap.gap_s)
+    whole_min = math.ceil((plays * mean_s + (plays - 1) * gap.gap_s) / 60.0)
+    if rig.thermode is not None and 60.0 * whole_min > rig.limits.session_s:
+        # Its session is judged by its gate alone: doses then add up over all of it.
+        rig = rig.with_(**{"safety.session_min": float(whole_min)})
     with bar("drives", "judging all together") as progress:
         ready, gap = judge_drives(icons, rig, study, gap, materials.device, progress)
     check_session_time(plays, mean_s, gap.gap_s)
+    orders = courses
+    if study.threshold is not None:  # the worst that can come: the greatest step in every trial
+        numbers = range(1, study.threshold.trials + 1)
+        orders = (Schedule("any", tuple(Trial(1, number, icons[-1].name) for number in numbers)),)
     with bar("sessions", "writing") as progress:
-        judged = judge_sessions(_judged_courses(materials, courses), icons, rig, held, gap.gap_s, progress)
+        judged = judge_sessions(orders, icons, rig, held, gap.gap_s, progress)
     return Plan(materials, JudgedStudy(ready, gap, *judged), landing, courses)
 
 
@@ -172,24 +179,6 @@ def plays_of(study: Study, icons: int) -> int:
         return study.threshold.trials
     assert study.trials is not None
     return icons * (study.trials.repetitions * study.trials.blocks + study.trials.practice)
-
-
-def _judged_courses(materials: Materials, courses: tuple[Schedule, ...]) -> tuple[Schedule, ...]:
-    """Orders that are judged as sessions; for a threshold the worst: the greatest step in every trial."""
-    threshold = materials.study.threshold
-    if threshold is None:
-        return courses
-    strongest = materials.chosen[-1].name
-    trials = tuple(Trial(1, number, strongest) for number in range(1, threshold.trials + 1))
-    return (Schedule("any", trials),)
-
-
-def _whole_session(rig: Rig, plays: int, mean_s: float, gap_s: float) -> Rig:
-    """A thermode's session is judged by its gate alone: doses then add up over all of it, where it is longer."""
-    minutes = math.ceil((plays * mean_s + (plays - 1) * gap_s) / 60.0)
-    if rig.thermode is None or 60.0 * minutes <= rig.limits.session_s:
-        return rig
-    return rig.with_(**{"safety.session_min": float(minutes)})
 
 
 def levels_K(threshold: Threshold) -> tuple[float, ...]:

@@ -10,14 +10,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 from importlib import resources
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .build import FELT, UNFELT, Plan, levels_K, plays_of
 from .schedule import Pace, events_description, json_bytes, planned_events, planned_plays, table
 from .study_file import labels_of
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Session
 
 SCRIPTS = ("run_study.py", "study_bench.py", "study_questplus.py")
 """The script and what it imports; the last one only for a threshold."""
@@ -62,7 +59,12 @@ def files_of(plan: Plan) -> dict[str, bytes]:
         **_timeline(plan),
     }
     if study.threshold is not None:
-        files["levels.csv"] = _levels(plan, stimuli, markers)
+        changes = zip(names, levels_K(study.threshold), strict=True)
+        levels = [
+            {"icon": name, "change_K": f"{change:g}", **_drive(name, plan, stimuli, markers)}
+            for name, change in changes
+        ]
+        files["levels.csv"] = table(LEVELS, levels)
     for course in plan.courses:
         rows = [
             {
@@ -98,7 +100,7 @@ def study_facts(plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, in
 
     materials, judged, landing = plan.materials, plan.judged, plan.landing
     study, threshold = materials.study, materials.study.threshold
-    names = list(markers)
+    left_out = ("plays", "checks", "uncertainty", "limits", "what_it_is_not")
     return {
         "thermicon": version("thermicon"),
         "study_sha256": materials.sha256,
@@ -128,20 +130,16 @@ def study_facts(plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, in
         "break_s": study.timing.break_s,
         "answer_s": study.timing.answer_s,
         "planned_s": planned_s(plan),
-        "levels": dict(zip(names, levels_K(threshold), strict=True)) if threshold else None,
+        "levels": dict(zip(markers, levels_K(threshold), strict=True)) if threshold else None,
         "threshold": None if threshold is None else threshold.model_dump(),
-        "sessions": {label: _session_facts(session) for label, session in judged.sessions.items()},
+        "sessions": {
+            label: {key: value for key, value in session.to_dict().items() if key not in left_out}
+            for label, session in judged.sessions.items()
+        },
         "after_breaks": {label: blocks.colour for label, blocks in judged.after_breaks.items()},
         "baseline_drift_K": dict(judged.drift_K),
         "cautions": list(judged.cautions),
     }
-
-
-def _session_facts(session: Session) -> dict[str, object]:
-    """The verdict on a session without its plays."""
-    whole = session.to_dict()
-    left_out = ("plays", "checks", "uncertainty", "limits", "what_it_is_not")
-    return {key: value for key, value in whole.items() if key not in left_out}
 
 
 def _choices(plan: Plan) -> dict[str, dict[str, str]]:
@@ -170,16 +168,6 @@ def _drive(name: str, plan: Plan, stimuli: Mapping[str, str], markers: Mapping[s
         "duration_s": f"{plan.durations_s[name]:.9g}",
         "marker": str(markers[name]),
     }
-
-
-def _levels(plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, int]) -> bytes:
-    threshold = plan.materials.study.threshold
-    assert threshold is not None
-    changes = zip(plan.durations_s, levels_K(threshold), strict=True)
-    rows = [
-        {"icon": name, "change_K": f"{change:g}", **_drive(name, plan, stimuli, markers)} for name, change in changes
-    ]
-    return table(LEVELS, rows)
 
 
 def _shipped(name: str) -> bytes:

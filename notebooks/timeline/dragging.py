@@ -6,20 +6,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from thermicon.icons import CueErrors, Icon
 from thermicon.icons.model.motion import periods_of
-from thermicon.icons.model.statements import Wave
+from thermicon.icons.model.parameter import Path
+from thermicon.icons.model.statements import Leaf, Wave
 from thermicon.icons.number_text import number
 
 from ..editing.cue_check import read_text
 from ..editing.number_literals import Amount, WrittenStatement, keyword_of, kind_of, replaced, written
 from .handles import PEAK_AT, RATES, Grip, IconCorner, corners_of, grip_of, slots_of
-
-if TYPE_CHECKING:
-    from thermicon.icons.model.parameter import Path
-    from thermicon.icons.model.statements import Leaf
 
 ROUNDS = 12
 CLOSE = 1e-9
@@ -53,34 +50,27 @@ def drag(text: str, icon: str, index: int, time_s: float, level: float, start: f
     'the corner cannot come before 2 s, where its statement begins'
     """
     try:
-        return DragResult(_drag(text, icon, index, time_s, level, start))
+        reading = read_text(text)
+        if (found := reading.find(icon)) is None:
+            cause = f"line {reading.troubles[0].line} has an error" if reading.troubles else f"no icon is called {icon}"
+            raise _Refused(f"the corner stays where it is: {cause}")
+        corners = corners_of(found, start)
+        if not 0 <= index < len(corners):
+            raise _Refused(f"{icon} has {len(corners)} corners now, so there is none to move at {index + 1}")
+        if not (math.isfinite(time_s) and math.isfinite(level)):
+            raise _Refused("the corner was not moved: the message has no target position")
+        corner = corners[index]
+        grip = grip_of(corner, slots_of(reading.family_of(icon)))
+        if (grip.time is None and grip.level is None) or corner.path is None or corner.leaf.span is None:
+            raise _Refused(grip.why or "this corner does not move")
+        move = _Move(found, index, corner, corner.path, grip, start, written(text, corner.leaf.span))
+        new = replaced(text, move.edits(time_s, level))
+        if troubles := read_text(new).troubles:
+            hint = f"; {troubles[0].hint}" if troubles[0].hint else ""
+            raise _Refused(f"line {troubles[0].line} would be wrong: {troubles[0].headline}{hint}")
+        return DragResult(new)
     except _Refused as why:
         return DragResult(text, str(why))
-
-
-def _drag(text: str, name: str, index: int, time_s: float, level: float, start: float | None) -> str:
-    reading = read_text(text)
-    icon = reading.find(name)
-    if icon is None:
-        cause = f"line {reading.troubles[0].line} has an error" if reading.troubles else f"no icon is called {name}"
-        raise _Refused(f"the corner stays where it is: {cause}")
-    corners = corners_of(icon, start)
-    if not 0 <= index < len(corners):
-        raise _Refused(f"{name} has {len(corners)} corners now, so there is none to move at {index + 1}")
-    if not (math.isfinite(time_s) and math.isfinite(level)):
-        raise _Refused("the corner was not moved: the message has no target position")
-    corner = corners[index]
-    grip = grip_of(corner, slots_of(reading.family_of(name)))
-    if (grip.time is None and grip.level is None) or corner.path is None or corner.leaf.span is None:
-        raise _Refused(grip.why or "this corner does not move")
-    move = _Move(icon, index, corner, grip, start, written(text, corner.leaf.span))
-    edits = move.edits(time_s, level)
-    new = replaced(text, edits)
-    after = read_text(new)
-    if after.troubles:
-        first = after.troubles[0]
-        raise _Refused(f"line {first.line} would be wrong: {first.headline}{f'; {first.hint}' if first.hint else ''}")
-    return new
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +80,7 @@ class _Move:
     icon: Icon
     index: int
     corner: IconCorner
+    path: Path
     grip: Grip
     start: float | None
     place: WrittenStatement
@@ -137,14 +128,15 @@ class _Move:
     def replay(self, size: float, took: float) -> tuple[float, float]:
         """The place of the corner with a statement of another size and time."""
         self.check(size, took)
-        if self.corner.path is None:
-            return float(self.corner.level), float(self.corner.time_s)
         try:
             leaf = replace(self.corner.leaf, **self.fields(size, took))
-            body = _with(self.icon.statements, self.corner.path, leaf)
+            body = _with(self.icon.statements, self.path, leaf)
             found = corners_of(replace(self.icon, statements=body), self.start)
-        except (CueErrors, ValueError) as wrong:
-            raise _Refused(_said(wrong)) from None
+        except CueErrors as wrong:
+            first = wrong.errors[0]
+            raise _Refused(f"{first.title}: {first.what}{f'; {first.help}' if first.help else ''}") from None
+        except ValueError as wrong:  # in the words of its last part: the place is known
+            raise _Refused(str(wrong).rpartition(": ")[2]) from None
         if len(found) <= self.index:
             raise _Refused("the statement would no longer have this corner")
         return float(found[self.index].level), float(found[self.index].time_s)
@@ -152,8 +144,8 @@ class _Move:
     def check(self, size: float, took: float) -> None:
         """Refuse an invalid statement: no time, no size."""
         now, grip = self.corner, self.grip
-        if grip.time is not None and took <= 0:
-            raise _Refused(self.too_early())
+        if grip.time is not None:
+            self.check_time(took)
         if grip.level is not None and abs(size) < CLOSE:
             raise _Refused("the corner cannot be at the level at which its statement begins: that would be no change")
         if isinstance(now.leaf, Wave) and grip.level is not None and size * now.leaf.sign < 0:
@@ -248,14 +240,11 @@ class _Move:
         self.check_time(value)
         return {} if value == where.rounded(now, "time") else {(where.start, where.end): where.text(value)}
 
-    def check_time(self, value: Decimal) -> None:
-        """Refuse a time that is rounded to none."""
+    def check_time(self, value: float | Decimal) -> None:
+        """Refuse a time that is none, or rounded to none."""
         if value <= 0:
-            raise _Refused(self.too_early())
-
-    def too_early(self) -> str:
-        """The sentence for a corner at or before the beginning of its statement."""
-        return f"the corner cannot come before {number(float(self.corner.begin_s), 2)} s, where its statement begins"
+            begin = number(float(self.corner.begin_s), 2)
+            raise _Refused(f"the corner cannot come before {begin} s, where its statement begins")
 
 
 def _with(body: Sequence[Any], path: Path, leaf: Leaf) -> tuple[Any, ...]:
@@ -264,11 +253,3 @@ def _with(body: Sequence[Any], path: Path, leaf: Leaf) -> tuple[Any, ...]:
     part = body[place]
     new = replace(part, body=_with(part.body, rest, leaf)) if rest else leaf
     return (*body[:place], new, *body[place + 1 :])
-
-
-def _said(wrong: Exception) -> str:
-    """What is wrong, in the words of its last part: the place is known."""
-    if isinstance(wrong, CueErrors):
-        first = wrong.errors[0]
-        return f"{first.title}: {first.what}{f'; {first.help}' if first.help else ''}"
-    return str(wrong).rpartition(": ")[2]

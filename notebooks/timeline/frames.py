@@ -9,19 +9,17 @@ import math
 import tomllib
 from dataclasses import asdict, dataclass, field
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thermicon.icons.number_text import signed
+from thermicon.perception.sensation.received import uniform_clock
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from .scene import Drawing, Scene
 
-    from .scene import Drawing, Scene
-
-    Floats = NDArray[np.float32]
-
+Floats = NDArray[np.float32]
 MOST_POINTS = 3_000
 """Intervals that a curve is drawn with, at most; a long run is thinned to every k-th row."""
 DRAGGED_POINTS = 750
@@ -31,7 +29,6 @@ WORDS: dict[str, Any] = tomllib.loads(
     (files("thermicon.notebooks") / "data" / "workbench.toml").read_text(encoding="utf-8")
 )
 """What words of the field mean, and what is said behind "?"."""
-Role = str
 
 
 def terms_of(*names: str) -> list[list[str]]:
@@ -64,7 +61,7 @@ class _Curves:
     rows: slice
     buffers: list[Floats] = field(default_factory=list)
 
-    def take(self, key: str, label: str, values: NDArray[np.float64], role: Role, **look: Any) -> dict[str, Any]:
+    def take(self, key: str, label: str, values: NDArray[np.float64], role: str, **look: Any) -> dict[str, Any]:
         """Take the values of a curve, and return the series that stands for it; ``look``: dash, width, step."""
         self.buffers.append(np.ascontiguousarray(values[self.rows], dtype=np.float32))
         return {"key": key, "label": label, "buffer": len(self.buffers) - 1, "role": role, **look}
@@ -79,8 +76,6 @@ def frame_of(scene: Scene, points: int = MOST_POINTS) -> CanvasFrame:
     >>> [panel["key"] for panel in made.meta["panels"]], made.meta["time"]["n"], len(made.buffers)
     (['temperature', 'heat', 'current', 'sensation'], 1401, 11)
     """
-    from thermicon.perception.sensation.received import uniform_clock
-
     badge = scene.badge
     meta: dict[str, Any] = {
         "type": "frame",
@@ -105,7 +100,10 @@ def frame_of(scene: Scene, points: int = MOST_POINTS) -> CanvasFrame:
     if len(drawing.percept.psi_cold) >= rows:
         panels.append(_sensation(drawing, curves))
     meta["time"] = {"t0": float(trace.time_s[0]), "dt": dt * every, "n": len(curves.buffers[0])}
-    meta["handles"] = [] if scene.stale else _handles(drawing)
+    if not scene.stale:
+        panel = "current" if trace.control == "current" else "temperature"
+        for told in map(asdict, drawing.handles):
+            meta["handles"].append({"t": told.pop("time_s"), "y": told.pop("level"), "panel": panel, **told})
     return CanvasFrame({**meta, "panels": panels}, tuple(curves.buffers))
 
 
@@ -182,20 +180,8 @@ def _panel(
     return {**own, "levels": [], "marks": [], "digits": 2, "terms": [], "folds": False, **more}
 
 
-def _handles(drawing: Drawing) -> list[dict[str, Any]]:
-    panel = "current" if drawing.trace.control == "current" else "temperature"
-    made = []
-    for handle in drawing.handles:
-        told = asdict(handle)
-        made.append({"t": told.pop("time_s"), "y": told.pop("level"), "panel": panel, **told})
-    return made
-
-
-_ROLES: dict[str, Role] = {"cold": "cool", "warm": "warm"}
-
-
 def _mark(time_s: float, label: str, channel: str | None, value: float | None) -> dict[str, Any]:
-    role = "ink" if channel is None else _ROLES[channel]
+    role = {None: "ink", "cold": "cool", "warm": "warm"}[channel]
     return {"t": _number(time_s), "label": label, "role": role, "y": None if value is None else _number(value)}
 
 

@@ -8,13 +8,13 @@ from fractions import Fraction
 from itertools import islice
 from typing import TYPE_CHECKING, Any, Literal
 
+from thermicon.icons import Family, Icon
 from thermicon.icons.model.icon import rest_level
 from thermicon.icons.model.motion import advance, amplitude, pieces
+from thermicon.icons.model.parameter import Path
 from thermicon.icons.model.statements import Current, Hold, Play, Pulse, Ramp, Repeat, Rest, Return, Step, Total, Wave
 
 if TYPE_CHECKING:
-    from thermicon.icons import Family, Icon
-    from thermicon.icons.model.parameter import Path
     from thermicon.icons.model.statements import Leaf
 
 MOST_HANDLES = 150

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+from thermicon.circuit import Rig, Trace
 from thermicon.circuit.solver.inverse import LIMITS, baseline_C, steps_at
 from thermicon.circuit.solver.trace import CLOSE_K
+from thermicon.icons import Icon
+from thermicon.perception import Percept
+from thermicon.perception.observer.observer import Channel
 from thermicon.perception.sensation.features import HELD_SHARE, STILL_K, directions
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from thermicon.circuit import Rig, Trace
-    from thermicon.icons import Icon
-    from thermicon.perception import Percept
-    from thermicon.perception.observer.observer import Channel
 
 FELT_DPRIME = 1.0
 """Smallest marked peak of sensation: the detection threshold in a two-interval choice, d′ = 1."""
@@ -76,7 +73,14 @@ def missed_spans(icon: Icon, trace: Trace, rig: Rig) -> tuple[Span, ...]:
         return ()
     met = ["driver's limits"] if trace.outcome is None else [name for name, _ in trace.outcome.limits if name in LIMITS]
     label = f"unreachable: {' and '.join(met)}" if met else "unreachable"
-    return tuple(_spans(trace.time_s, _missed(icon, trace, rig), label))
+    missed = np.concatenate(([False], _missed(icon, trace, rig), [False])).astype(np.int8)
+    found: list[Span] = []
+    for begin, end in np.flatnonzero(np.diff(missed)).reshape(-1, 2).tolist():
+        from_s, to_s = float(trace.time_s[max(begin - 1, 0)]), float(trace.time_s[min(end, len(trace.time_s) - 1)])
+        if found and from_s - found[-1].to_s < GAP_S:
+            from_s = found.pop().from_s
+        found.append(Span(from_s, to_s, label))
+    return tuple(found)
 
 
 def _missed(icon: Icon, trace: Trace, rig: Rig) -> NDArray[np.bool_]:
@@ -93,14 +97,3 @@ def _missed(icon: Icon, trace: Trace, rig: Rig) -> NDArray[np.bool_]:
         if len(arrived):
             missed[window[window < arrived[0]]] = False
     return np.asarray(missed)
-
-
-def _spans(time_s: NDArray[np.float64], missed: NDArray[np.bool_], label: str) -> list[Span]:
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], missed, [False])).astype(np.int8))).reshape(-1, 2)
-    found: list[Span] = []
-    for begin, end in edges.tolist():
-        from_s, to_s = float(time_s[max(begin - 1, 0)]), float(time_s[min(end, len(time_s) - 1)])
-        if found and from_s - found[-1].to_s < GAP_S:
-            from_s = found.pop().from_s
-        found.append(Span(from_s, to_s, label))
-    return found

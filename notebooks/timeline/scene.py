@@ -5,21 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from thermicon.icons import CueErrors
+from thermicon.circuit import InputError, Rig, Trace, simulate
+from thermicon.circuit.safety.verdict import SafetyVerdict, judge_safety
+from thermicon.circuit.solver.inverse import baseline_C
+from thermicon.circuit.solver.simulate import duration_s
+from thermicon.circuit.solver.steady import steady_state
+from thermicon.icons import CueErrors, Icon
 from thermicon.icons.number_text import number, percent
+from thermicon.perception import Observer, Percept, perceive
 
 from ..editing.cue_check import MOST_NAMES, Reading, Trouble, read_text, trouble_of
 from .handles import MOST_HANDLES, Handle, handles_of
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig, Trace
-    from thermicon.circuit.safety.verdict import SafetyVerdict
-    from thermicon.icons import Icon
-    from thermicon.perception import Observer, Percept
-
-    from .marks import EventTime, Span
+from .marks import EventTime, Span, event_times_of, missed_spans
 
 TAIL_S = 10.0
 """Seconds of sensation simulated after the last corner, as in ``thermicon simulate --figure``."""
@@ -83,7 +82,16 @@ class Scene:
         if self.stale or self.drawing is None:
             cause = "the text has errors" if self.troubles else self.notes[0] if self.notes else "there is no icon"
             return Badge("grey", f"safety not judged: {cause}")
-        return _badge(self.drawing.verdict)
+        if not (findings := self.drawing.verdict.findings):
+            return Badge("green", "limits kept: in this simulation (export judges worst cases)")
+        first = findings[0]
+        unit = "" if first.unit == "1" else f" {first.unit}"
+        side = "above" if first.upper else "below"
+        kind = "not safe" if first.severity == "hard" else "caution"
+        what = f"{kind}: {first.quantity} {number(first.value, 2)}{unit} at {first.time_s:.2f} s, {side}"
+        limit = f"the {first.severity} limit of {number(first.limit, 2)}{unit}, in this simulation"
+        colour: Colour = "red" if self.drawing.verdict.colour == "red" else "amber"
+        return Badge(colour, f"{what} {limit}", tuple(map(str, findings)))
 
     def __repr__(self) -> str:
         count = len(self.troubles)
@@ -104,9 +112,6 @@ def scene(
     The drawing of the scene ``before`` stays, as ``stale``, where there is nothing new. Raises nothing for what a
     person may type or set.
     """
-    from thermicon.circuit import InputError
-    from thermicon.perception import Observer
-
     wanted = icon if icon is not None or before is None else before.icon
     reading = read_text(text)
     names, count, drawing = ((), 0, None) if before is None else (before.names, before.count, before.drawing)
@@ -133,15 +138,6 @@ def scene(
 
 def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
     """Play one icon and judge it; raises what simulation raises: RigError, CueErrors, ValueError."""
-    from thermicon.circuit import simulate
-    from thermicon.circuit.safety.verdict import judge_safety
-    from thermicon.circuit.solver.inverse import baseline_C
-    from thermicon.circuit.solver.simulate import duration_s
-    from thermicon.circuit.solver.steady import steady_state
-    from thermicon.perception import perceive
-
-    from .marks import event_times_of, missed_spans
-
     lasts = duration_s(icon, rig)
     rate = RATE_HZ if (lasts + TAIL_S) * RATE_HZ <= MOST_ROWS else float(MOST_ROWS // (lasts + TAIL_S + 1.0))
     end = math.ceil((lasts + TAIL_S) * rate - 1e-6) / rate  # on the beat, so that the clock is uniform
@@ -203,21 +199,6 @@ def _notes_on(drawing: Drawing, reading: Reading, rig: Rig) -> list[str]:
     if len(drawing.handles) == MOST_HANDLES:
         notes.append(f"only the first {MOST_HANDLES} corners can be dragged")
     return [*notes, *trace.warnings, *drawing.percept.outside_data]
-
-
-def _badge(verdict: SafetyVerdict) -> Badge:
-    findings = verdict.findings
-    if not findings:
-        return Badge("green", "limits kept: in this simulation (export judges worst cases)")
-    first = findings[0]
-    unit = "" if first.unit == "1" else f" {first.unit}"
-    side = "above" if first.upper else "below"
-    text = (
-        f"{'not safe' if first.severity == 'hard' else 'caution'}: {first.quantity} {number(first.value, 2)}{unit} at "
-        f"{first.time_s:.2f} s, {side} the {first.severity} limit of {number(first.limit, 2)}{unit}, in this simulation"
-    )
-    colour: Colour = "red" if verdict.colour == "red" else "amber"
-    return Badge(colour, text, tuple(map(str, findings)))
 
 
 def _once(notes: Sequence[str]) -> tuple[str, ...]:

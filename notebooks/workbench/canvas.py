@@ -11,7 +11,6 @@ import gzip
 import json
 from base64 import b64encode
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
 from importlib.resources import files
 from typing import Any
 from uuid import uuid4
@@ -19,6 +18,9 @@ from uuid import uuid4
 import anywidget
 import numpy
 import traitlets
+
+from thermicon.icons.model.units import UNITS
+from thermicon.icons.model.words import CLAUSES, CONTROLS, EXAMPLES, STARTS, VOCABULARY
 
 Message = dict[str, Any]
 
@@ -49,8 +51,12 @@ STYLES = ("theme", "layout", "editor", "timeline", "heat")
 def module_text() -> str:
     """Return the ES module: the words of the cue language, then all parts."""
     folder = files("thermicon.notebooks") / "canvas_parts"
-    parts = [_shortened((folder / f"{part}.js").read_text(encoding="utf-8")) for part in PARTS]
-    constants = {"CUE_WORDS": cue_words(), "PACKED_CODEMIRROR": _packed()}
+    scripts = ((folder / f"{part}.js").read_text(encoding="utf-8") for part in PARTS)
+    # A notebook that stores its widgets stores the module: comments and indentation go, and CodeMirror is a third.
+    lines = (line.strip() for script in scripts for line in script.splitlines())
+    parts = (line for line in lines if line and not line.startswith(("//", "/** ", "* ", "*/")))
+    packed = b64encode(gzip.compress(codemirror_text().encode(), mtime=0)).decode()
+    constants = {"CUE_WORDS": cue_words(), "PACKED_CODEMIRROR": packed}
     first = (f"const {name} = {json.dumps(value, ensure_ascii=False)};" for name, value in constants.items())
     return "\n".join((*first, *parts))
 
@@ -60,29 +66,14 @@ def codemirror_text() -> str:
     return (files("thermicon.notebooks") / "codemirror" / "codemirror.js").read_text(encoding="utf-8")
 
 
-@lru_cache(maxsize=1)
-def _packed() -> str:
-    """CodeMirror for the page to unpack: a notebook that stores its widgets stores a third of it."""
-    return b64encode(gzip.compress(codemirror_text().encode(), mtime=0)).decode()
-
-
 def style_text() -> str:
     """Return the style sheet."""
     folder = files("thermicon.notebooks") / "canvas_parts"
     return "\n".join((folder / f"{style}.css").read_text(encoding="utf-8") for style in STYLES)
 
 
-def _shortened(script: str) -> str:
-    """Leave out indentation and lines of comment: a notebook that stores its widgets stores the module with each."""
-    lines = (line.strip() for line in script.splitlines())
-    return "\n".join(line for line in lines if line and not line.startswith(("//", "/** ", "* ", "*/")))
-
-
 def cue_words() -> dict[str, Any]:
     """Words to colour and to offer, so that the page never knows another language than the parser."""
-    from thermicon.icons.model.units import UNITS
-    from thermicon.icons.model.words import CLAUSES, CONTROLS, EXAMPLES, STARTS, VOCABULARY
-
     units = {unit for kind in UNITS.values() for unit in kind if unit}
     return {
         "keywords": sorted({*CLAUSES, *CONTROLS, *STARTS.values()}.union(*VOCABULARY.values())),
@@ -127,15 +118,9 @@ class Canvas(anywidget.AnyWidget):
 
     def _receive(self, widget: Canvas, content: Message, buffers: Sequence[Any]) -> None:
         if content.get("type") == "hello" and (self._newest is None or self.view != "design"):
-            self._greet()
+            # A page that waits for the first frame hears at least that the kernel is there.
+            meta, arrays = self._newest or ({"type": "alive"}, None)
+            self.send(meta, buffers=arrays)
             return
         for handler in tuple(self._handlers):
             handler(content)
-
-    def _greet(self) -> None:
-        """Send the newest frame; a page that waits for the first one hears at least that the kernel is there."""
-        if self._newest is None:
-            self.send({"type": "alive"})
-            return
-        meta, arrays = self._newest
-        self.send(meta, buffers=arrays)

@@ -6,7 +6,11 @@ import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from thermicon.circuit import Rig
+from thermicon.perception import Observer
+from thermicon.perception.observer.observer_model import ObserverModel
 
 from ..editing.cue_check import mended
 from ..files.document import Document
@@ -14,11 +18,6 @@ from ..timeline.dragging import drag
 from ..timeline.frames import DRAGGED_POINTS, MOST_POINTS, CanvasFrame, frame_of
 from ..timeline.scene import Scene, scene, with_notes
 from .knobs import knobs_of, turned
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.perception import Observer
-    from thermicon.perception.observer.observer_model import ObserverModel
 
 Message = Mapping[str, Any]
 MOST_LETTERS = 1_000_000
@@ -58,8 +57,6 @@ class DesignModel:
     @property
     def observer(self) -> Observer:
         """The nominal person."""
-        from thermicon.perception import Observer
-
         return Observer.load() if self.model is None else self.model.nominal
 
     def on_change(self, tell: Callable[[], None]) -> None:
@@ -147,7 +144,9 @@ class DesignModel:
                 self._typed(message.get("text"))
                 return None
             case "icon":
-                self._choose(str(message.get("name")))
+                name = str(message.get("name"))
+                self.document.history = self.document.history.chosen(name)
+                self._draw(name)
                 return None
             case "drag":
                 return self._dragged(message)
@@ -166,10 +165,6 @@ class DesignModel:
             raise ValueError(f"the text is longer than {MOST_LETTERS:,} letters, so it was not changed")
         self.document.history = self.document.history.typed(text, time.monotonic())
         self._draw()
-
-    def _choose(self, name: str) -> None:
-        self.document.history = self.document.history.chosen(name)
-        self._draw(name)
 
     def _dragged(self, message: Message) -> str:
         handle, end = int(message["handle"]), bool(message.get("end"))

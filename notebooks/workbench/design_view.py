@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import ipywidgets as widgets
 
-from .canvas import Canvas, module_text
+from thermicon.circuit import Rig
+
+from ..timeline.frames import CanvasFrame
+from .canvas import Canvas
+from .design_model import DesignModel
 from .knobs import Knob, knobs_of
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from thermicon.circuit import Rig
-
-    from ..timeline.frames import CanvasFrame
-    from .design_model import DesignModel
 
 SHARED = "globalThis.thermiconCanvas"
 
@@ -24,7 +21,7 @@ SHARED = "globalThis.thermiconCanvas"
 class MainCanvas(Canvas):
     """The canvas of the design view, which lends its module to the other canvases of the page."""
 
-    _esm = f"{module_text()}\n{SHARED} = {{ render }};"
+    _esm = f"{Canvas._esm}\n{SHARED} = {{ render }};"
 
 
 class SideCanvas(Canvas):
@@ -51,7 +48,7 @@ class DesignView:
         self.on_page: dict[str, Callable[[Mapping[str, Any]], None]] = {}
         self.reset = widgets.Button(description="Reset", tooltip="all sliders back to the rig's values")
         self.reset.layout = widgets.Layout(width="68px", height="26px", margin="0")
-        self.reset.on_click(lambda _: self._reset())
+        self.reset.on_click(self._reset)
         self.reset.add_class("thermicon-reset")
         self.knobs = widgets.Box([]).add_class("thermicon-knobs")
         self._make_knobs()
@@ -99,7 +96,7 @@ class DesignView:
         self.send(self.design.turn({key: value}))
         self._tell(next(knob for knob in knobs_of(self.design.nominal) if knob.key == key))
 
-    def _reset(self) -> None:
+    def _reset(self, _: widgets.Button) -> None:
         self.send(self.design.reset())
         self._make_knobs()
 
@@ -108,5 +105,4 @@ class DesignView:
         changed = knob.key in self.design.values
         said = f"{knob.label} ({knob.unit})" + (f" · rig {knob.shown(knob.value)}" if changed else "")
         text = f'<span class="{"changed" if changed else ""}" title="{escape(knob.what)}">{escape(said)}</span>'
-        if self._labels[knob.key].value != text:
-            self._labels[knob.key].value = text
+        self._labels[knob.key].value = text

@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING, Any
 
 import ipywidgets as widgets
 
+from thermicon.circuit import Rig
+from thermicon.circuit.rig.rig import rig_names
 from thermicon.icons import Icon, IconSet, load_library, read_cue
 from thermicon.icons.atomic import OutputError
 from thermicon.icons.files.shipped import library_names
 
 from ..files.document import Document
+from ..files.versions import Version
 from ..report.blocks import fragment
 from ..timeline.frames import WORDS
 from .live_view import button, safely
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-
-    from ..files.versions import Version
     from .design_view import DesignView
 
 MOST_FILES, MOST_RIGS = 200, 50
@@ -54,14 +54,13 @@ class DocumentBar:
         self._offer_rigs()
         self.rig.observe(lambda change: self._safely(lambda: self._take_rig(change["new"])), "value")
         self._panels = {"open": self._open_panel(), "save": self._save_panel()}
-        self._panels["help"] = widgets.VBox([widgets.HTML(help_html())])
+        self._panels["help"] = widgets.VBox([widgets.HTML(fragment("points", WORDS["sheet"]))])
         self.panel = widgets.VBox([]).add_class("thermicon-panel")
         self.shown: str | None = None
         self.offered_text: Version | None = None
         self.offer = self._offer_panel()
-        buttons = [self.buttons[name] for name in ("Open", "Save", "Save as")]
-        rest = [self.buttons[name] for name in ("Undo", "Redo", "?")]
-        self.bar = widgets.Box([self.title, *buttons, self.rig, *rest]).add_class("thermicon-bar")
+        buttons = list(self.buttons.values())
+        self.bar = widgets.Box([self.title, *buttons[:3], self.rig, *buttons[3:]]).add_class("thermicon-bar")
         self.box = widgets.VBox([self.offer, self.said, self.bar, self.panel]).add_class("thermicon-project")
         self.design.on_change(self.renew)
         self.renew()
@@ -77,14 +76,14 @@ class DocumentBar:
         """Say anew what the document is, and what may cost somebody their text."""
         document, history = self.document, self.document.history
         kind = "th-caution" if document.dirty else ""
-        self._set(self.title, fragment("marked", document.title, f"thermicon-file {kind}".strip()))
+        self.title.value = fragment("marked", document.title, f"thermicon-file {kind}".strip())
         self.buttons["Undo"].disabled, self.buttons["Redo"].disabled = not history.past, not history.future
         self.buttons["Save"].disabled = not document.dirty and document.path is not None
         self.say(document.warning(), "th-caution")
 
     def say(self, text: str, kind: str = "th-good") -> None:
         """Show a sentence below the bar; none hides the line."""
-        self._set(self.said, fragment("block", text, f"th-note {kind}") if text else "")
+        self.said.value = fragment("block", text, f"th-note {kind}") if text else ""
         self.said.layout.display = "" if text else "none"
 
     def save(self) -> None:
@@ -118,8 +117,6 @@ class DocumentBar:
 
     def _take_rig(self, name: str) -> None:
         """Show the icons on a rig that was shown before, or load it by name or path."""
-        from thermicon.circuit import Rig
-
         if name == self._taken:
             return
         try:
@@ -132,8 +129,6 @@ class DocumentBar:
         self.say("")
 
     def _offer_rigs(self) -> None:
-        from thermicon.circuit.rig.rig import rig_names
-
         nominal = self.design.nominal
         if nominal.name not in rig_names():
             self._rigs[nominal.name] = nominal  # it may lie in another folder, so it is not loaded by its name
@@ -166,7 +161,7 @@ class DocumentBar:
         self.offer.layout.display = "none" if found is None else ""
         if found is not None:
             words = f"Unsaved text of {self.document.name} was typed {found.age}:"
-            self._set(self.offered, fragment("marked", words, ""))
+            self.offered.value = fragment("marked", words, "")
 
     def _restore(self) -> None:
         if (found := self.offered_text) is not None:
@@ -232,11 +227,6 @@ class DocumentBar:
     def _safely(self, act: Callable[[], None]) -> None:
         safely(act, lambda wrong: self.say(wrong, "th-bad"))
 
-    @staticmethod
-    def _set(part: Any, value: str) -> None:
-        if part.value != value:
-            part.value = value
-
 
 def document_of(source: str | Path | Icon | IconSet | None, keeps: bool = False) -> Document:
     """Return the document of a source, None for six-icons; raises CueErrors for a file or name that does not exist,
@@ -250,16 +240,7 @@ def document_of(source: str | Path | Icon | IconSet | None, keeps: bool = False)
         return Document.open(Path(source), keeps)
     if source is None or source in library_names():
         name = str(source or FIRST)
-        return Document(_shipped(name), name, keeps)
+        place = files("thermicon.icons") / "library" / f"{name}.cue"
+        text = place.read_text(encoding="utf-8") if place.is_file() else str(load_library(name))
+        return Document(text, name, keeps)
     return Document(str(read_cue(source)), keeps=keeps)  # or the reason why there is no such file
-
-
-def _shipped(name: str) -> str:
-    """A shipped set as it is written, with its comments."""
-    place = files("thermicon.icons") / "library" / f"{name}.cue"
-    return place.read_text(encoding="utf-8") if place.is_file() else str(load_library(name))
-
-
-def help_html() -> str:
-    """Return the sheet as HTML."""
-    return fragment("points", WORDS["sheet"])

@@ -7,27 +7,27 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import ipywidgets as widgets
 
+from thermicon.circuit import Device, Export, Rig, export
+from thermicon.circuit.delivery.device import device_names
+from thermicon.circuit.delivery.formats import format_names, load_format
 from thermicon.icons.atomic import OutputError
 from thermicon.icons.files.shipped import NotRegular, TooLarge, read_limited
 
 from ..editing.cue_check import read_text
+from ..figures.compare_figure import export_figure
+from ..figures.print_figure import themed_svg
 from ..files.exporting import felt_in, others
 from ..report.blocks import fragment
+from .design_model import DesignModel
 from .live_view import BackgroundJob, LiveView
 from .set_model import MOST_RANKED
 from .view_blocks import delivered_html, gate_html, written_html
 
-if TYPE_CHECKING:
-    from thermicon.circuit import Export, Rig
-
-    from .design_model import DesignModel
-
 FORMAT = "csv"
-ExportRequest = tuple[str, "Rig", "str | None", str, str]
+ExportRequest = tuple[str, Rig, str | None, str, str]
 """Text, rig, name of the icon (None: all), device, format."""
 
 
@@ -43,10 +43,6 @@ class ExportView(LiveView[ExportRequest]):
         self._build(folder)
 
     def _build(self, folder: Path) -> None:
-        from thermicon.circuit import Device
-        from thermicon.circuit.delivery.device import device_names
-        from thermicon.circuit.delivery.formats import load_format
-
         names = device_names()
         usual = last_device(folder) or load_format(FORMAT).device
         wide = {"width": "100%"}
@@ -126,8 +122,6 @@ class ExportView(LiveView[ExportRequest]):
 
     def _prepare(self, job: BackgroundJob, request: ExportRequest) -> None:
         """The background job."""
-        from thermicon.circuit import export
-
         text, rig, name, device, form = request
         icons = read_text(text).icons
         assert icons is not None
@@ -145,7 +139,7 @@ class ExportView(LiveView[ExportRequest]):
         names = [one.delivery.icon.name for one in made.prepared]
         # The icon that stops the export is shown first.
         place = colours.index("red") if "red" in colours else names.index(shown) if shown in names else 0
-        picture = export_svg(made, place)
+        picture = themed_svg(export_figure(made, place, (8.6, 5.0)))
         told = delivered_html(made, remarks)
         job.on_page(lambda: self._show(made, place, told, picture, request))
 
@@ -192,28 +186,15 @@ class ExportView(LiveView[ExportRequest]):
 
     @staticmethod
     def _forms(device: str) -> list[tuple[str, str]]:
-        from thermicon.circuit import Device
-        from thermicon.circuit.delivery.formats import format_names, load_format
-
         driven_by, forms = Device.load(device).driven_by, map(load_format, format_names())
         return [(f"{form.name}: {form.title}", form.name) for form in forms if driven_by in form.takes]
 
 
 def last_device(folder: Path) -> str | None:
     """The shipped device of the newest drive in a folder, as its sidecar has it; None where there is none."""
-    from thermicon.circuit.delivery.device import device_names
-
     try:
         newest = max(folder.glob("*.json"), key=lambda path: path.stat().st_mtime)
         name = json.loads(read_limited(newest, 4_000_000))["device"]["name"]
     except (OSError, ValueError, KeyError, TypeError, NotRegular, TooLarge):
         return None
     return name if name in device_names() else None
-
-
-def export_svg(made: Export, place: int) -> str:
-    """The figure of one icon, in the colours of the page's theme."""
-    from ..figures.compare_figure import export_figure
-    from ..figures.print_figure import themed_svg
-
-    return themed_svg(export_figure(made, place, (8.6, 5.0)))

@@ -158,7 +158,6 @@ class LiveView(ABC, Generic[Request]):
     def _job(self, request: Request) -> Work:
         """Announce the request on the page and return the work of the background thread."""
 
-    @abstractmethod
     def _show_finished(self) -> None:
         """Say that the result on the page is that of the request."""
 

@@ -5,25 +5,26 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermicon.circuit import Rig
+from thermicon.icons import Icon
+from thermicon.perception import Observer, Ranking, rank
 from thermicon.perception.criteria import MOST_ICONS
+from thermicon.perception.identification.map import PerceptualMap, map_of
+from thermicon.perception.kernels.parallel import step_counter
+from thermicon.perception.observer.observer_model import ObserverModel
+from thermicon.perception.plots.draw_heat import clustered_order, short
+from thermicon.perception.ranking.rank import with_intervals
+from thermicon.perception.ranking.scores import PairScore
 
 from ..editing.cue_check import Reading, read_text
 from ..timeline.frames import MOST_POINTS, CanvasFrame, terms_of
 from ..timeline.scene import draw
 
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.icons import Icon
-    from thermicon.perception import Observer, Ranking
-    from thermicon.perception.identification.map import PerceptualMap
-    from thermicon.perception.observer.observer_model import ObserverModel
-    from thermicon.perception.ranking.scores import PairScore
-
-SetRequest = tuple[str, "Rig"]
+SetRequest = tuple[str, Rig]
 QUICK, WELL = (12, 0), (200, 128)
 """How many people, and how many draws of the parameters: at once, and when there is time."""
 MOST_RANKED = 60
@@ -83,12 +84,6 @@ def rank_set(
     Where the ``observer`` has fewer draws than ``parameters``, all are used. ``known`` is the ranking without them,
     where it was made already.
     """
-    from thermicon.perception import rank
-    from thermicon.perception.identification.map import map_of
-    from thermicon.perception.kernels.parallel import step_counter
-    from thermicon.perception.plots.draw_heat import clustered_order
-    from thermicon.perception.ranking.rank import with_intervals
-
     began = time.perf_counter()
     reading = read_text(text)
     if (why := why_not(reading)) is not None or reading.icons is None:
@@ -128,8 +123,6 @@ def why_not(reading: Reading) -> str | None:
 
 def heat_frame(made: RankedSet, picked: tuple[str, str] | None, seq: int = 0) -> CanvasFrame:
     """The frame of both heat maps, near icons side by side."""
-    from thermicon.perception.plots.draw_heat import short
-
     order, labels = np.array(made.order), made.labels
     distances = made.ranking.d_prime[np.ix_(order, order)]
     confusions = made.ranking.confusion[np.ix_(order, order)]

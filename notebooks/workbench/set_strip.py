@@ -8,18 +8,17 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from thermicon.icons.number_text import percent
+from thermicon.perception import Goal, Ranking, rank
+from thermicon.perception.ranking.rank import with_intervals
+from thermicon.perception.selection.goal_result import judge_goal
 
 from ..editing.cue_check import read_text
+from .design_model import DesignModel
 from .live_view import BackgroundJob, LiveView
 from .set_model import QUICK, WELL, SetRequest, draws_of, why_not
-
-if TYPE_CHECKING:
-    from thermicon.perception import Ranking
-
-    from .design_model import DesignModel
 
 
 class SetStrip(LiveView[SetRequest]):
@@ -84,9 +83,6 @@ class SetStrip(LiveView[SetRequest]):
 
     def _rank(self, job: BackgroundJob, request: SetRequest) -> None:
         """The background job, on one core: the other one draws."""
-        from thermicon.perception import Goal, rank
-        from thermicon.perception.ranking.rank import with_intervals
-
         text, rig = request
         while self.design.dragging:
             job.go_on()
@@ -102,8 +98,6 @@ class SetStrip(LiveView[SetRequest]):
 
     def _take(self, made: Ranking, request: SetRequest) -> None:
         """Show a ranking, and whether it meets the goal, which is part of its text."""
-        from thermicon.perception.selection.goal_result import judge_goal
-
         self.ranking, self._source, self._met, self._binding = made, request, None, ""
         try:
             if goal := self.design.document.goal:
@@ -115,12 +109,6 @@ class SetStrip(LiveView[SetRequest]):
 
     def _finish(self, request: SetRequest) -> None:
         self._running, self._finished, self._failed_request = None, request, None
-
-    def _show_finished(self) -> None:
-        pass
-
-    def _mark(self, stale: bool) -> None:
-        pass
 
     def _say(self, text: str, kind: str = "") -> None:
         self._why = text

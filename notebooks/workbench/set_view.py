@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import ipywidgets as widgets
+
+from thermicon.circuit import Rig
+from thermicon.perception import Goal, Ranking, cheapest_edit
+from thermicon.perception.identification.map import PerceptualMap
+from thermicon.perception.selection.edit import Edit, NoEdit
 
 from ..editing.cue_check import read_text
 from ..editing.number_literals import with_edit
@@ -13,18 +18,11 @@ from ..figures.print_figure import themed_svg
 from ..report.blocks import Bullets, fragment, shown
 from ..report.rank_report import rank_report
 from ..report.set_report import SetReport
+from .design_model import DesignModel
 from .design_view import SideCanvas
 from .live_view import BackgroundJob, BackgroundWorker, LiveView, button
 from .set_model import QUICK, WELL, RankedSet, SetRequest, draws_of, heat_frame, overlay_frame, rank_set, why_not
 from .view_blocks import edit_html, pair_html, set_html
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.perception import Ranking
-    from thermicon.perception.identification.map import PerceptualMap
-    from thermicon.perception.selection.edit import Edit, NoEdit
-
-    from .design_model import DesignModel
 
 ShowText = Callable[[str], None]
 SHARES = 10
@@ -56,7 +54,7 @@ class SetView(LiveView[SetRequest]):
 
     def _build(self) -> None:
         self.heat, self.overlay = SideCanvas("heat"), SideCanvas("traces")
-        self.heat.on_message(self._receive)
+        self.heat.on_message(lambda message: self._safely(lambda: self._cell(message)))
         names = ("scores", "status", "choice", "table", "notes", "pair", "edit_text", "why", "map", "caveat")
         self.said = {name: widgets.HTML() for name in names}
         said = self.said
@@ -123,8 +121,6 @@ class SetView(LiveView[SetRequest]):
 
     def apply_edit(self) -> None:
         """Apply the suggested edit to the text, as one step that can be undone."""
-        from thermicon.perception.selection.edit import Edit
-
         edit = self.edit
         if not isinstance(edit, Edit):
             raise ValueError("there is no edit to apply")
@@ -143,8 +139,6 @@ class SetView(LiveView[SetRequest]):
         self.chooser.ask(lambda job: self._choose(job, text, rig, count, goal))
 
     def _choose(self, job: BackgroundJob, text: str, rig: Rig, count: int, goal: str) -> None:
-        from thermicon.perception import Goal
-
         from ..cli.improve import chosen, objective_of
 
         icons, model, wanted = read_text(text).icons, self.design.model, Goal.parse(goal) if goal else None
@@ -219,8 +213,6 @@ class SetView(LiveView[SetRequest]):
             self._safely(lambda: self.pick(*pair))
 
     def _look_for_edit(self, job: BackgroundJob, made: RankedSet, a: str, b: str) -> None:
-        from thermicon.perception import cheapest_edit
-
         found = cheapest_edit(made.ranking, a, b)
         job.on_page(lambda: self._offer_edit(found))
 
@@ -231,14 +223,9 @@ class SetView(LiveView[SetRequest]):
         self.said["edit_text"].value = fragment("marked", f"no edit: {said}", "th-caution")
 
     def _offer_edit(self, found: Edit | NoEdit) -> None:
-        from thermicon.perception.selection.edit import NoEdit
-
         self.edit = found
         self.said["edit_text"].value = edit_html(found)
         self.apply.disabled = isinstance(found, NoEdit)
-
-    def _receive(self, message: dict[str, Any]) -> None:
-        self._safely(lambda: self._cell(message))
 
     def _cell(self, message: dict[str, Any]) -> None:
         """A cell was clicked: answer at once, so that the page knows that the kernel is alive."""

@@ -5,16 +5,13 @@ from __future__ import annotations
 import difflib
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import ipywidgets as widgets
 
+from ..files.versions import Version
 from ..report.blocks import fragment
+from .design_model import DesignModel
 from .live_view import button
-
-if TYPE_CHECKING:
-    from ..files.versions import Version
-    from .design_model import DesignModel
 
 NOTHING = "Keep the set as it is now as a version, and go on editing: here it can be compared with, and brought back."
 ABOUT = "− only in the version, + only in the editor"

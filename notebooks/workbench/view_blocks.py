@@ -4,25 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
+from thermicon.circuit import Export
+from thermicon.circuit.delivery.prepare import Prepared
+from thermicon.circuit.safety.checks import Check
 from thermicon.icons.number_text import number, percent
+from thermicon.perception.identification.delivered import PerceivedChange
+from thermicon.perception.ranking.scores import PairScore
+from thermicon.perception.selection.edit import Edit, NoEdit
 
 from ..report.blocks import Bullets, Cell, Facts, Heading, Text, fragment, grid, shown
 from ..report.gate_words import CAUTION, gate_words, steps_of, warning_lines
 from ..report.rank_details import caveat, edit_words, outside_lines, trouble_lines
 from ..report.rank_report import cards, icon_table
+from ..report.set_report import SetReport
 from ..timeline.frames import WORDS, terms_of
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Export
-    from thermicon.circuit.delivery.prepare import Prepared
-    from thermicon.circuit.safety.checks import Check
-    from thermicon.perception.identification.delivered import PerceivedChange
-    from thermicon.perception.ranking.scores import PairScore
-    from thermicon.perception.selection.edit import Edit, NoEdit
-
-    from ..report.set_report import SetReport
 
 ALONE = "The set has only one icon, so there are no distances to show."
 COLOURS = {"green": "th-good", "amber": "th-caution", "red": "th-bad"}
@@ -59,8 +56,6 @@ def pair_html(pair: PairScore) -> str:
 
 def edit_html(edit: Edit | NoEdit | None) -> str:
     """The cheapest edit of a pair, or why there is none."""
-    from thermicon.perception.selection.edit import NoEdit
-
     if edit is None:
         return shown(Text("looking for the cheapest edit …", "status"))
     if isinstance(edit, NoEdit):

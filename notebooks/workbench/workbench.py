@@ -8,22 +8,25 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from IPython import get_ipython
+
+from thermicon.circuit import Rig, Trace
 from thermicon.icons import CueErrors, Icon, IconSet, parse
 from thermicon.icons.atomic import OutputError
 from thermicon.icons.model.arguments import checked
+from thermicon.icons.model.words import nearest
+from thermicon.perception import Percept, Ranking, rank
+from thermicon.perception.criteria import MOST_ICONS
+from thermicon.perception.observer.observer_model import ObserverModel
 
+from ..files.document import Document
+from ..timeline.scene import Scene
 from .design_model import DesignModel
 from .document_bar import document_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from thermicon.circuit import Rig, Trace
-    from thermicon.perception import Percept, Ranking
-    from thermicon.perception.observer.observer_model import ObserverModel
-
-    from ..files.document import Document
-    from ..timeline.scene import Scene
     from .design_view import DesignView
     from .document_bar import DocumentBar
     from .export_view import ExportView
@@ -81,8 +84,6 @@ class Workbench:
         folder: str | Path = "drives",
         observer: str | Path | None = None,
     ) -> None:
-        from thermicon.circuit import Rig
-
         try:
             document = document_of(text, keeps=has_kernel())
         except OutputError as wrong:
@@ -91,8 +92,14 @@ class Workbench:
         with suppress(CueErrors):
             site = parse(document.text).context.site
         loaded = Rig.of(rig, site)
-        self._design = DesignModel(document, loaded, icon, _observer_of(observer))
-        self._check_icon(icon)
+        model = None if observer is None else ObserverModel.load(observer)
+        self._design = DesignModel(document, loaded, icon, model)
+        scene = self._design.scene
+        # A name that is asked for must be there; while people write, another icon may take its place.
+        if icon is not None and not scene.troubles and scene.icon != icon:
+            near = nearest(icon, scene.names)
+            has = f"did you mean {near}?" if near else f"there are {', '.join(scene.names[:20])}"
+            raise ValueError(f"no icon is called {icon!r}; {has}")
         self._folder = Path(folder)
         self._page: Any = None
         self.design_view: DesignView | None = None
@@ -101,16 +108,6 @@ class Workbench:
         self.export_view: ExportView | None = None
         self.versions_view: VersionsView | None = None
         self.bar: DocumentBar | None = None
-
-    def _check_icon(self, icon: str | None) -> None:
-        """A name that is asked for must be there; while people write, another icon may take its place."""
-        from thermicon.icons.model.words import nearest
-
-        scene = self._design.scene
-        if icon is not None and not scene.troubles and scene.icon != icon:
-            near = nearest(icon, scene.names)
-            has = f"did you mean {near}?" if near else f"there are {', '.join(scene.names[:20])}"
-            raise ValueError(f"no icon is called {icon!r}; {has}")
 
     @property
     def text(self) -> str:
@@ -166,9 +163,6 @@ class Workbench:
 
         Raises CueErrors for a bad text, ValueError for more icons than are compared at once.
         """
-        from thermicon.perception import rank
-        from thermicon.perception.criteria import MOST_ICONS
-
         if len(self.icons) > MOST_ICONS:
             many = f"{len(self.icons):,} icons are more than the {MOST_ICONS:,} that are compared at once"
             raise ValueError(f"{many}: narrow the family")
@@ -266,20 +260,6 @@ class Workbench:
         return f"Workbench{repr(self.scene).removeprefix('Scene')}"
 
 
-def _observer_of(file: str | Path | None) -> ObserverModel | None:
-    """The observer of a file; None: the shipped one."""
-    if file is None:
-        return None
-    from thermicon.perception.observer.observer_model import ObserverModel
-
-    return ObserverModel.load(file)
-
-
 def has_kernel() -> bool:
     """Whether there is a kernel whose front end could show widgets."""
-    try:
-        from IPython import get_ipython
-    except ImportError:
-        return False
-    shell = get_ipython()
-    return getattr(shell, "kernel", None) is not None
+    return getattr(get_ipython(), "kernel", None) is not None

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from thermicon.circuit.solver.draw import COOL, WARM, new_axes
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from .effects import Effect
-    from .onset_stages import OnsetStages
+from .effects import Effect
+from .onset_stages import OnsetStages
 
 LOOKS: dict[str, dict[str, Any]] = {
     "cold": {"color": COOL, "lw": 2.0},
@@ -69,15 +69,8 @@ def plot_onset_stages(stages: Sequence[OnsetStages], ax: Axes | None = None) -> 
     axes.set_title("Onset of a nominal person (blue: cold, orange: warm)", loc="left", fontsize="medium")
     axes.spines[["top", "right", "left"]].set_visible(False)
     axes.tick_params(axis="y", length=0)
-    _stage_legend(axes)
-    return axes
-
-
-def _stage_legend(axes: Axes) -> None:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
     grey = "#333333"
     handles: list[Any] = [Patch(fc=(grey, alpha), hatch=hatch, ec="w", label=name) for _, name, alpha, hatch in STAGES]
     handles.append(Line2D([], [], ls="", marker="D", ms=5, mfc="w", mec="#222222", label="conduction of the leg"))
     axes.figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize="small", frameon=False)
+    return axes

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from thermicon.circuit.solver.draw import COOL, WARM, new_axes
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from thermicon.perception.evidence.results import AblatedRow, Constant, PredictedRow
+from thermicon.perception.evidence.results import AblatedRow, Constant, PredictedRow
 
 GREY, INK = "#9a9a9a", "#222222"
 SAYS_NOTHING = 2.0

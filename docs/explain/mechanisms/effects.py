@@ -11,6 +11,7 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.special import ndtri
 
 from thermicon.circuit.solver.modes import thermode_modes
 from thermicon.perception.arrays import Array
@@ -24,8 +25,6 @@ Look = Literal["cold", "warm", "reference", "off", "other"]
 """How a curve is drawn: in a channel's colour, thin for a reference, dashed grey for a mechanism turned off."""
 DT_S = 0.02
 STRIPS_CM2 = 9.8
-PEOPLE_SHARES = (0.05, 0.5, 0.95)
-"""Cautious people have a high criterion: shares of people with a lower one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,8 +59,7 @@ def limits_effect() -> Effect:
         Curve("cold", "cold", time, _felt(corners, "cold", whole, time, baseline_C=38.0)),
         Curve("cold, limit off", "off", time, _felt(corners, "cold", free, time, baseline_C=38.0)),
     ]
-    title = "A fall from 38 to 31 °C at 1 K/s (forearm)"
-    return Effect(title, "time (s)", "sensation (d′)", tuple(curves))
+    return Effect("A fall from 38 to 31 °C at 1 K/s (forearm)", "time (s)", "sensation (d′)", tuple(curves))
 
 
 def adaptation_effect() -> Effect:
@@ -88,8 +86,9 @@ def depth_effect() -> Effect:
         ):
             change = _course(site, at, 32.0, [(0.5, -5.0)], time.size)
             curves.append(Curve(f"{site}, {counted}", look, time, change - change[0]))
-    title = "A fall by 5 K in 0.5 s at the cold receptors"
-    return Effect(title, "time (s)", "change of temperature (K)", tuple(curves))
+    return Effect(
+        "A fall by 5 K in 0.5 s at the cold receptors", "time (s)", "change of temperature (K)", tuple(curves)
+    )
 
 
 def summation_effect() -> Effect:
@@ -133,21 +132,17 @@ def gain_noise_effect() -> Effect:
 
 def criteria_effect() -> Effect:
     """The same for people with a low, a middle and a high criterion."""
-    from scipy.special import ndtri
-
-    sizes, observer = np.linspace(0.02, 3.0, 60), Observer.load()
-
-    def noticed(share: float) -> Array:
-        return _noticed(sizes, observer, float(np.exp(observer.criterion_between * ndtri(share))))
-
-    words = ("lax (5th percentile)", "middle", "cautious (95th percentile)")
-    looks: tuple[Look, ...] = ("other", "cold", "reference")
-    curves = [
-        Curve(word, look, sizes, 100.0 * noticed(share))
-        for word, look, share in zip(words, looks, PEOPLE_SHARES, strict=True)
-    ]
-    title = "Three people who differ in criterion alone"
-    return Effect(title, "size of the fall (K)", "noticed (%)", tuple(curves))
+    sizes, observer, curves = np.linspace(0.02, 3.0, 60), Observer.load(), []
+    # Cautious people have a high criterion: the last number is the share of people with a lower one.
+    people: tuple[tuple[str, Look, float], ...] = (
+        ("lax (5th percentile)", "other", 0.05),
+        ("middle", "cold", 0.5),
+        ("cautious (95th percentile)", "reference", 0.95),
+    )
+    for words, look, share in people:
+        criterion = float(np.exp(observer.criterion_between * ndtri(share)))
+        curves.append(Curve(words, look, sizes, 100.0 * _noticed(sizes, observer, criterion)))
+    return Effect("Three people who differ in criterion alone", "size of the fall (K)", "noticed (%)", tuple(curves))
 
 
 EFFECTS: Mapping[str, Callable[[], Effect]] = {

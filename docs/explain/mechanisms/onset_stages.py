@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from thermicon.circuit import Rig, simulate
+from thermicon.icons import Icon
 from thermicon.perception.observer.channels import CHANNELS, Channel
 from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.mechanisms.conduction import SPINAL_M_PER_S, SPINE_M
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.sensation.percept import perceive
-
-if TYPE_CHECKING:
-    from thermicon.icons import Icon
-
 
 LEG_M_PER_S: dict[Channel, float] = {"cold": 2.1, "warm": 0.5}
 """Conduction at the leg (Fowler et al. 1988)."""
@@ -46,7 +42,10 @@ def onset_stages(icons: Iterable[Icon], rig: Rig) -> tuple[OnsetStages, ...]:
     for icon in icons:
         trace = simulate(icon, rig)
         path_m = whole.path_m(trace.site)
-        felt, late = perceive(trace, whole), perceive(trace, _as_at_the_leg(whole, path_m))
+        # Nerves conduct so fast that the whole delay is that of a leg's nerve of the path alone.
+        delays_s = (path_m / LEG_M_PER_S[channel] - SPINE_M / SPINAL_M_PER_S.of(channel) for channel in CHANNELS)
+        leg = replace(whole, velocity_m_per_s=Both(*(path_m / delay_s for delay_s in delays_s)))
+        felt, late = perceive(trace, whole), perceive(trace, leg)
         if felt.onset_s is None or felt.channel is None or late.onset_s is None:
             continue
         nerve = path_m / whole.velocity_m_per_s.of(felt.channel)
@@ -54,9 +53,3 @@ def onset_stages(icons: Iterable[Icon], rig: Rig) -> tuple[OnsetStages, ...]:
         before = felt.onset_s - nerve - cord - whole.decision_s
         stages.append(OnsetStages(icon.name, felt.channel, before, nerve, cord, whole.decision_s, late.onset_s))
     return tuple(stages)
-
-
-def _as_at_the_leg(whole: Observer, path_m: float) -> Observer:
-    """The observer whose nerves conduct so fast that the whole delay is that of a leg's nerve of the path alone."""
-    delays_s = (path_m / LEG_M_PER_S[channel] - SPINE_M / SPINAL_M_PER_S.of(channel) for channel in CHANNELS)
-    return replace(whole, velocity_m_per_s=Both(*(path_m / delay_s for delay_s in delays_s)))

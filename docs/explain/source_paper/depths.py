@@ -55,22 +55,17 @@ def resembles(cue: Icon | Drive, rig: Rig, pad: Pad, *, tail_s: float = 0.0) -> 
     depth = np.concatenate([[0.0], rig.column.depth_m, [rig.skin.thickness_m]])
     run = probe_depths(cue, rig, depth, tail_s=tail_s)
     read = pad.reads(run.trace, rig)
-    return _nearest(rig, depth, run.temperature_C - run.temperature_C[:, :1], read - read[0])
-
-
-def _nearest(rig: Rig, depth_m: Array, change_K: Array, wanted_K: Array) -> Likeness:
-    """The nearest course; between two lumps the best share has a closed form."""
+    change_K, wanted_K = run.temperature_C - run.temperature_C[:, :1], read - read[0]
     best = Likeness(0.0, np.inf)
-    for k in range(len(depth_m) - 1):
-        high, low = depth_m[k], depth_m[k + 1]
-        if low - high < 1e-9:
+    for k in range(len(depth) - 1):
+        if depth[k + 1] - depth[k] < 1e-9:
             continue
         step = change_K[k + 1] - change_K[k]
-        square = float(step @ step)
+        square = float(step @ step)  # between two lumps the best share has a closed form
         share = 0.0 if square == 0 else min(max(float((wanted_K - change_K[k]) @ step) / square, 0.0), 1.0)
         rms = float(np.sqrt(np.mean((wanted_K - change_K[k] - share * step) ** 2)))
         if rms < best.residual_K:
-            best = Likeness(_depth_at(rig, float(high), float(low), share), rms)
+            best = Likeness(_depth_at(rig, float(depth[k]), float(depth[k + 1]), share), rms)
     return best
 
 

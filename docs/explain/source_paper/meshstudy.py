@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from thermicon.circuit.arrays import Array
 from thermicon.circuit.rig.rig import Rig
@@ -19,9 +19,6 @@ from thermicon.circuit.solver.network import Network, network_on
 from thermicon.circuit.solver.simulate import rows_until
 from thermicon.circuit.solver.steady import holding_current_A, state_under_current
 from thermicon.icons import Icon
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 WAYS = ("current", "temperature")
 DEPTHS = ("cold_receptor_C", "warm_receptor_C")
@@ -71,7 +68,6 @@ class MeshStudy:
     reference_C: Array
     error_K: Array
     reference_error_K: float
-    display_swing_K: float
 
     def part(self, mesh: int, at_s: float) -> tuple[float, float]:
         """Error of the change from the start at a time in s, in parts of that change: at cold and at warm depth."""
@@ -82,8 +78,6 @@ class MeshStudy:
 
     def to_frame(self) -> pd.DataFrame:
         """Largest errors of each mesh in K, and that at cold depth in parts of the change so far at 0.5 s and 4 s."""
-        import pandas as pd
-
         return pd.DataFrame(
             {
                 "mesh": [mesh.name for mesh in self.meshes],
@@ -111,18 +105,18 @@ def mesh_study(
         raise RigError("a drive prescribes no temperature to follow; compare meshes with way='current'")
     meshes = usual_meshes(rig) if meshes is None else tuple(meshes)
     networks = [_network(rig, mesh) for mesh in (*meshes, CONVERGED, HALVED)]
-    plan = _Currents.of(rig, cue)
-    rows = rows_until(plan.end_s, rate_Hz)
+    played, rest_A, end_s = _currents(rig, cue)
+    rows = rows_until(end_s, rate_Hz)
     runs = []
     for network in networks:
         if way == "current":
-            drive, state = plan.drive, state_under_current(network, plan.rest_A)
+            drive, state = played, state_under_current(network, rest_A)
         else:
-            drive, state = _led(rig, cue, network, plan.end_s)
+            drive, state = _led(rig, cue, network, end_s)
         bank, lane = Bank.of([network]), np.zeros(1, dtype=np.int64)
         intervals = cut(rows, drive.time_s, drive.current_A[np.newaxis], drive.held)
-        runs.append(run_forward(bank, lane, lane, intervals, bank.states([state]), (*DEPTHS, "display_C"))[:, 0])
-    reference, display = runs[-2][:2], runs[-2][2]
+        runs.append(run_forward(bank, lane, lane, intervals, bank.states([state]), DEPTHS)[:, 0])
+    reference = runs[-2]
     return MeshStudy(
         _name(cue),
         way,
@@ -130,9 +124,8 @@ def mesh_study(
         tuple(len(network.capacity_J_per_K) for network in networks[:-2]),
         rows,
         reference,
-        np.array([run[:2] - reference for run in runs[:-2]]),
-        float(np.abs(runs[-1][:2] - reference).max()),
-        float(np.ptp(display)),
+        np.array([run - reference for run in runs[:-2]]),
+        float(np.abs(runs[-1] - reference).max()),
     )
 
 
@@ -152,24 +145,16 @@ def _network(rig: Rig, mesh: Mesh) -> Network:
     return network_on(rig, column, float(deep))
 
 
-@dataclass(frozen=True, slots=True)
-class _Currents:
-    """The current that all meshes are played; before it, `rest_A` holds the steady state."""
-
-    drive: Drive
-    rest_A: float
-    end_s: float
-
-    @staticmethod
-    def of(rig: Rig, cue: Icon | Drive) -> _Currents:
-        if isinstance(cue, Drive):
-            return _Currents(cue, float(cue.current_A[0]), float(cue.time_s[-1]))
-        start = baseline_C(cue, rig)
-        if cue.context.control == "current":  # such a cue starts from the current that holds its baseline
-            start = design(cue, rig, 0.0).rest_A
-        end = float(cue.corners(start).duration_s)
-        plan = design(cue, rig, end)
-        return _Currents(plan.drive, plan.rest_A, end)
+def _currents(rig: Rig, cue: Icon | Drive) -> tuple[Drive, float, float]:
+    """The current that all meshes are played, what holds the steady state before it in A, and its end in s."""
+    if isinstance(cue, Drive):
+        return cue, float(cue.current_A[0]), float(cue.time_s[-1])
+    start = baseline_C(cue, rig)
+    if cue.context.control == "current":  # such a cue starts from the current that holds its baseline
+        start = design(cue, rig, 0.0).rest_A
+    end = float(cue.corners(start).duration_s)
+    plan = design(cue, rig, end)
+    return plan.drive, plan.rest_A, end
 
 
 def _led(rig: Rig, cue: Icon | Drive, network: Network, end_s: float) -> tuple[Drive, Array]:

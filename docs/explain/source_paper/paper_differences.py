@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
+from scipy.optimize import brentq
 
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.solver.simulate import simulate
@@ -25,9 +26,6 @@ from .paper import (
     printed,
     thermistors,
 )
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 SURFACE_FILM_W_PER_M2K = (8.0, 12.0)
 """Still room air over bare skin; what the standing flux of the printed slab is compared with."""
@@ -78,8 +76,6 @@ def paper_table() -> pd.DataFrame:
     >>> list(paper_table().columns)
     ['claim', 'verdict', 'paper', 'ours', 'why']
     """
-    import pandas as pd
-
     rows = []
     for each in paper_differences():
         sentences = (text[:1].upper() + text[1:] for text in (each.paper, each.ours, each.why))
@@ -147,11 +143,8 @@ def _rest(rig: Rig, palm: Rig) -> PaperDifference:
 
 
 def _receptors(rig: Rig) -> PaperDifference:
-    dermis, change_K, rate = (
-        dermis_change(rig),
-        printed().one("dermis change").central,
-        printed().one("dermis rate").central,
-    )
+    dermis = dermis_change(rig)
+    change_K, rate = printed().one("dermis change").central, printed().one("dermis rate").central
     (cold, cold_rate), (warm, warm_rate) = (dermis.at(depth) for depth in dermis.receptor_m)
     return PaperDifference(
         "change at the receptors",
@@ -181,8 +174,6 @@ def _insulated(rig: Rig) -> PaperDifference:
 
 
 def _lateral_for(rig: Rig, change_K: float) -> Thermistors:
-    from scipy.optimize import brentq
-
     def over(lateral_m: float) -> float:
         return float(np.ptp(thermistors(rig, lateral_m=lateral_m).trace.probe("3"))) - change_K
 

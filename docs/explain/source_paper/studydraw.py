@@ -4,23 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from textwrap import fill
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from thermicon.circuit.solver.draw import COOL, DISPLAY, LIMIT, PROBE, SKIN, TARGET, WARM, new_axes, tidy
+from thermicon.circuit.solver.trace import Trace
 
-from .paper import printed
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from thermicon.circuit.solver.trace import Trace
-
-    from .dermis_course import DermisCourse
-    from .meshstudy import MeshStudy
-    from .paper import DermisChange, MissByLimit, Thermistors
+from .dermis_course import DermisCourse
+from .meshstudy import MeshStudy
+from .paper import DermisChange, MissByLimit, Thermistors, printed
 
 MARKS = ("", "s", "o", "^", "D", "v", "x", "P")
 """Meshes carry marks, so that they are distinguishable in grey; the first, the one judged, is the thick plain line."""
@@ -129,8 +124,6 @@ def plot_miss(misses: MissByLimit, ax: Axes | None = None) -> Axes:
 
 def stacked_figure(*drawn: tuple[Callable[[Any, Axes], Axes], Any]) -> Figure:
     """Return a figure with one panel below the other: functions that draw, and what each draws."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(7.4, 2.9 * len(drawn)), layout="constrained")
     for panel, (plot, data) in zip(np.atleast_1d(figure.subplots(len(drawn), 1)), drawn, strict=True):
         plot(data, panel)

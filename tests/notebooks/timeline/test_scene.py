@@ -11,10 +11,10 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library, parse
 from thermicon.notebooks.editing.cue_check import MOST_NAMES, mended
+from thermicon.notebooks.report.blocks import fragment
 from thermicon.notebooks.timeline.frames import MOST_POINTS, WORDS, CanvasFrame, frame_of
 from thermicon.notebooks.timeline.marks import missed_spans
 from thermicon.notebooks.timeline.scene import MOST_ROWS, TAIL_S, Scene, scene, with_notes
-from thermicon.notebooks.workbench.document_bar import help_html
 from thermicon.perception import perceive
 
 DIP = "cue 1\nicon dip {\n  cool by 6 °C at 3 °C/s\n  hold for 4 s\n  return at 3 °C/s\n}\n"
@@ -304,7 +304,7 @@ def test_words_mean_what_the_glossary_says() -> None:
 
 
 def test_the_sheet_is_short_and_the_panel_of_sensation_explains_d_prime_and_clocks(rig: Rig) -> None:
-    html = help_html()
+    html = fragment("points", WORDS["sheet"])
     assert "F8" in html
     assert html.count("<li>") <= 10
     assert max(map(len, WORDS["sheet"])) <= 110, "a line of it would take two"
