@@ -161,7 +161,7 @@ def make_plan(materials: Materials, bar: ProgressBar, say: Callable[[str], None]
     with bar("drives", "judging all together") as progress:
         ready, gap = judge_drives(icons, rig, study, gap, materials.device, progress)
     check_session_time(plays, mean_s, gap.gap_s)
-    with bar("sessions", "writing") as progress:
+    with bar("sessions", "summing up") as progress:
         judged = judge_sessions(_judged_courses(materials, courses), icons, rig, held, gap.gap_s, progress)
     return Plan(materials, JudgedStudy(ready, gap, *judged), landing, courses)
 
