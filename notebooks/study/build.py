@@ -168,7 +168,7 @@ def make_plan(materials: Materials, bar: ProgressBar, say: Callable[[str], None]
     if study.threshold is not None:  # the worst that can come: the greatest step in every trial
         numbers = range(1, study.threshold.trials + 1)
         orders = (Schedule("any", tuple(Trial(1, number, icons[-1].name) for number in numbers)),)
-    with bar("sessions", "writing") as progress:
+    with bar("sessions", "summing up") as progress:
         judged = judge_sessions(orders, icons, rig, held, gap.gap_s, progress)
     return Plan(materials, JudgedStudy(ready, gap, *judged), landing, courses)
 

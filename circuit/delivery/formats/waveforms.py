@@ -62,7 +62,8 @@ def wav_fits(device: Device) -> None:
 
 
 def wav_write(delivery: DeliveredDrive) -> bytes:
-    """The file; raises FormatError for a rate that cannot be reached, and too many frames."""
+    """The file; raises FormatError for what `wav_fits` refuses, a rate that cannot be reached, and too many frames."""
+    WAV.check(delivery.device)
     samples = samples_of(delivery)
     frame_rate, each = frames(delivery)
     if (count := len(samples.codes) * each) > MOST_FRAMES:

@@ -26,7 +26,7 @@ WAYS = (
 )  # fmt: skip
 SLOW = (("dc-coupled-audio", "wav"), ("pwm-h-bridge-10", "csv"), ("pwm-h-bridge-10", "c-array"))
 SHARE_OF_SLOW = 0.02
-"""48,000 and 15,625 cycles a second cost the gate 2 to 9 s a drive."""
+"""15,625 cycles a second cost the gate 2 to 9 s a drive."""
 LOOPS = ("qst-tcs2", "closed-loop-controller")
 SHARE_OF_SETS, SHARE_OF_FINE_MESHES = 0.05, 0.04
 

@@ -24,8 +24,6 @@ from thermicon.icons import Icon
 
 TABLE = Path(__file__).with_name("everyday.csv")
 COMMENT, HEAD, *ROWS = TABLE.read_text("utf-8").splitlines()
-DEVICES = tuple(name for name in device_names() if name != "dc-coupled-audio")
-"""Without the one whose updates are at the rate of sound: each icon takes a minute."""
 STEPS = tuple(product(("skin", "display"), (-6, -3, 3, 6)))
 MARKS = {"unsafe": "not safe", "unreachable": "not reached", "lossy": "loses"}
 ORDINARY = (("thenar", "dac-16"), ("thenar", "pwm-h-bridge-10"), ("thenar", "qst-tcs2"), ("shani2021", "dac-16"))
@@ -112,12 +110,12 @@ def test_a_device_that_cannot_play_is_a_cause_like_any_other() -> None:
 def test_the_table_has_every_rig_with_every_device() -> None:
     assert ",".join(("rig", "device", *(column_of(*step) for step in STEPS))) == HEAD
     missing = "write the table anew: python tests/circuit/delivery/test_everyday_cues.py"
-    assert {tuple(row.split(",")[:2]) for row in ROWS} == set(product(rig_names(), DEVICES)), missing
+    assert {tuple(row.split(",")[:2]) for row in ROWS} == set(product(rig_names(), device_names())), missing
 
 
 def everything() -> list[str]:
     with ProcessPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
-        pairs = list(product(rig_names(), DEVICES))
+        pairs = list(product(rig_names(), device_names()))
         return [
             row_of(*pair, cases)
             for pair, cases in zip(pairs, pool.map(steps_on, *zip(*pairs, strict=True)), strict=True)

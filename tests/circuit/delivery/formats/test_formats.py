@@ -116,7 +116,8 @@ def test_what_a_format_cannot_hold_is_refused(
     found, samples = played(name)
     wide = replace(samples, scale=replace(samples.scale, **scale))  # type: ignore[arg-type]
     with pytest.raises(FormatError, match=words):
-        load_format(name).check(other := replace(found.device, **device))  # type: ignore[arg-type]
+        other = replace(found.device, **device)  # type: ignore[arg-type]
+        load_format(name).check(other)
         load_format(name).write(replace(found, device=other, played=wide))
 
 
