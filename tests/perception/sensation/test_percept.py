@@ -68,7 +68,8 @@ def test_a_larger_area_and_a_shorter_path_are_felt_sooner(cue: Any, observer: Ob
 def test_sites_of_the_forearm_have_thresholds_of_their_own(cue: Any, observer: Observer) -> None:
     trace, dull = cue(change=1.0), replace(observer, forearm_factor=Both(2.0, 2.0))
     wrist, arm, thenar, hand = (
-        perceive(trace.but(site=site), dull).psi_warm.max() for site in ("left wrist", "Forearm", "thenar", "hand-dorsum")
+        perceive(trace.but(site=site), dull).psi_warm.max()
+        for site in ("left wrist", "Forearm", "thenar", "hand-dorsum")
     )
     assert wrist == arm < thenar == hand
 
