@@ -1,8 +1,14 @@
 """Sentences of reports: singular counts, goals, choices, the reach of few participants."""
 
+from types import SimpleNamespace
+from typing import cast
+
 import pytest
 
+from thermicon.circuit.fitting.rig_fit import RigFit
+from thermicon.circuit.fitting.identify import FittedParameter
 from thermicon.notebooks.report.choices import choice_lines, goal_lines
+from thermicon.notebooks.report.fit_report import parameter_table
 from thermicon.notebooks.report.plan_report import designs_table
 from thermicon.perception import Goal
 from thermicon.perception.pilot.plan import ExperimentPlan, ExperimentSize
@@ -59,3 +65,13 @@ def test_the_star_of_a_plan_stands_at_sizes_that_are_enough(
     plan = ExperimentPlan((), None, sizes, 0.1 if found[0] is None else 0.8, "thenar", (), "episodes", 0, 8, "0")
     (row,) = designs_table(plan).rows
     assert ["*" in cell.text for cell in row[1:]] == starred
+
+
+def test_a_fitted_number_has_the_digits_that_its_interval_takes() -> None:
+    for value, low, high, said in (
+        (12.3456, 11, 14, "12.35 11.00 to 14.00"),
+        (12345.6, 12342, 12349, "12346 12342 to 12349"),
+    ):
+        item = FittedParameter("a", "a", "", 1.0, value, low, high, True, True)
+        (row,) = parameter_table(cast("RigFit", SimpleNamespace(parameters=[item]))).rows
+        assert " ".join(cell.text for cell in row[1:3]) == said

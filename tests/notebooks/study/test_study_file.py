@@ -7,7 +7,7 @@ import pytest
 from tests.builders import messages, missing
 from tests.notebooks.study.conftest import CUES, QUICK, write_study
 from thermicon.icons.model.errors import CueErrors
-from thermicon.notebooks.study.build import read_materials
+from thermicon.notebooks.study.build import plays_of, read_materials
 from thermicon.notebooks.study.schedule import courses_of, seed_of
 from thermicon.notebooks.study.study_file import StudyError, labels_of, parse_study, study_hash, study_text
 
@@ -93,5 +93,6 @@ def test_orders_follow_the_hash() -> None:
     courses = courses_of(study, names, seed)
     assert courses == courses_of(study, names, seed)
     assert [course.label for course in courses] == list(labels_of(study))
+    assert {len(course.trials) for course in courses} == {plays_of(study, 6)}, "practice is played, too"
     assert all([trial.trial for trial in course.trials if trial.block] == list(range(1, 13)) for course in courses)
     assert all({trial.trial for trial in course.trials if not trial.block} == {0} for course in courses)

@@ -44,6 +44,18 @@ def test_records_that_are_no_observer_are_refused(
         load(path)
 
 
+def test_of_few_draws_all_are_used_and_one_has_no_interval() -> None:
+    shipped = ObserverModel.of(None)
+
+    def few(count: int) -> ObserverModel:
+        held = shipped.drawn
+        return replace(shipped, posterior=replace(held, draws=held.draws[:count], memory=held.memory[:count]))
+
+    assert [each.draw_count(None, 8) for each in (few(3), shipped)] == [3, 8]
+    with pytest.raises(ValueError, match="at least two draws of the constants, not 1"):
+        rank(list(SIX)[:2], RIG, people=2, observer=few(1))
+
+
 @pytest.mark.parametrize("variable", VARIABLES)
 def test_whatever_is_needed_is_asked_for(variable: Variable) -> None:
     """Without a quantity that an observer is made of, there is this error and no other."""
