@@ -103,10 +103,9 @@ def limits(
         Asked("limits threshold", one.channel, "K", said, partial(measured, setting, one), noticed_K(one.channel))
         for one in conditions
     ]
-    made = []
-    for found, one in zip(predict(f"limits on the {site}", asked, variable, draws, seed), conditions, strict=True):
-        made.append(replace(found, value=float(np.median(np.exp(logs_of(crowd, setting, one)[0])))))
-    return tuple(made)
+    found = predict(f"limits on the {site}", asked, variable, draws, seed)
+    middle = [float(np.median(np.exp(logs_of(crowd, setting, one)[0]))) for one in conditions]
+    return tuple(replace(each, value=value) for each, value in zip(found, middle, strict=True))
 
 
 def reaction_times(variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0) -> tuple[Predicted, ...]:
