@@ -103,6 +103,5 @@ def opened(sealed: Sealed, trials: Trials, icons: IconSet, rig: Rig) -> Opened:
         "skin temperature alone": score(skin_alone(list(icons), rig)),
         "best that its matrix allows": score(own, shown[:, None] * own),
     }
-    return Opened(
-        sealed, int(number), float(counts.trace() / number), scores, math.sqrt(float(shown @ spread)) / number
-    )
+    chance = math.sqrt(float(shown @ spread)) / number
+    return Opened(sealed, int(number), float(counts.trace() / number), scores, chance)
