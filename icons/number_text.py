@@ -13,6 +13,11 @@ def signed(value: float, form: str = "g") -> str:
     return f"{value:{form}}".replace("-", "−")
 
 
+def unit_text(unit: str) -> str:
+    """A unit as it stands behind its number; nothing for the unit of a pure number, "1"."""
+    return "" if unit == "1" else f" {unit}"
+
+
 def count_of(count: int, noun: str, plural: str = "") -> str:
     """Write a count with its noun, whose plural has an s unless it is given.
 

@@ -13,9 +13,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermicon.icons import IconSet, parse
+from thermicon.circuit import Rig
+from thermicon.icons import Icon, IconSet, parse
 from thermicon.perception import Observer, Percept
 from thermicon.perception.identification.episodes import episode_distances, remembered
+from thermicon.perception.identification.population import memory_dprime
+from thermicon.perception.identification.task import USUAL
+from thermicon.perception.observer.channels import USUAL_NORM
+from thermicon.perception.observer.people import People
+from thermicon.perception.selection.appraise import population_response
+
+
+def population_dprime(icons: Sequence[Icon], rig: Rig, crowd: People) -> NDArray[np.float64]:
+    """Pairwise d′ (people, icons, icons) from memory, by the shipped observer."""
+    nominal = Observer.load()
+    felt, _ = population_response(icons, rig, crowd, observer=nominal)
+    return memory_dprime(felt, USUAL_NORM, crowd.memory, nominal, USUAL)
 
 
 def messages(beside: str, name: str = "messages.toml") -> dict[str, Any]:

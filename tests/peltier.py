@@ -5,6 +5,12 @@ from math import sqrt
 from thermicon.circuit.rig.module import ZERO_C_IN_K, Peltier
 
 
+def heat_absorbed_W(module: Peltier, current_A: float, cold_C: float, hot_C: float) -> float:
+    """Heat taken from the skin side in W: αTcI − I²R/2 − (Th − Tc)/Θ."""
+    pumped = module.seebeck_V_per_K * (cold_C + ZERO_C_IN_K) * current_A
+    return pumped - current_A**2 * module.resistance_ohm / 2 - (hot_C - cold_C) / module.thermal_resistance_K_per_W
+
+
 def heat_rejected_W(module: Peltier, current_A: float, cold_C: float, hot_C: float) -> float:
     """Heat given to the hot plate in W: αThI + I²R/2 − (Th − Tc)/Θ."""
     pumped = module.seebeck_V_per_K * (hot_C + ZERO_C_IN_K) * current_A

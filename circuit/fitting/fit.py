@@ -20,7 +20,7 @@ from .notes import beyond_noise, disagreement, far_off, kept, late_column, remar
 from .overlay import aligned, check_clocks, check_sensors
 from .problem import OFFSET_SD_K, FitProblem, changed_layers
 from .rig_fit import RigFit, channel_fits, reason_of, uncertainties
-from .runs import DISPLAY, Run, runs_of
+from .runs import DISPLAY, runs_of
 from .solve import Solution, solve
 
 if TYPE_CHECKING:
@@ -96,7 +96,12 @@ def fit(
     notes = [note for log in read for note in log.notes] + [note for run in runs for note in run.notes]
     runs = aligned(rig, runs)
     if free is None:
-        free = _told(rig, runs, alone, offset_K, fixed_skin)
+        possible = possible_keys(rig, alone)
+        free = tellable(FitProblem.of(_explicit(rig, possible), possible, runs, offset_K, fixed_skin))
+        if not free and not alone:
+            names = ", ".join(run.name for run in runs)
+            raise FitError(f"{names}: tells no key of rig {rig.name}; name keys to try them")
+        free = free or (CONTACT,)  # with the outermost layer, in series
         notes.insert(0, f"no keys were named; the logs tell best {', '.join(free)}")
     keys = free_keys((free,) if isinstance(free, str) else free, rig, alone)
     problem = FitProblem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin)
@@ -105,16 +110,6 @@ def fit(
     check_clocks(problem, solution.theta)
     sources = tuple((log.name, log.sha256) for log in read)
     return _result(problem, solution, rig, keys, sources, notes)
-
-
-def _told(rig: Rig, runs: tuple[Run, ...], alone: bool, offset_K: float, fixed_skin: bool) -> tuple[str, ...]:
-    keys = possible_keys(rig, alone)
-    told = tellable(FitProblem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin))
-    if not told and alone:  # with the outermost layer, in series
-        return (CONTACT,)
-    if not told:
-        raise FitError(f"{', '.join(run.name for run in runs)}: tells no key of rig {rig.name}; name keys to try them")
-    return told
 
 
 def _logs(logs: Log | str | Path | pd.DataFrame | Sequence[Log | str | Path | pd.DataFrame]) -> list[Log]:
@@ -132,10 +127,10 @@ def _logs(logs: Log | str | Path | pd.DataFrame | Sequence[Log | str | Path | pd
 
 def _explicit(rig: Rig, keys: Sequence[FitKey]) -> Rig:
     """The rig with its module given by parameters where one of them is free and it was given by data sheet or name."""
-    table = json.loads(rig.document).get("module", {})
-    if not any(key.key.removeprefix("module.") in PARAMETERS for key in keys) or not {"datasheet", "name"} & set(table):
+    ways = {"datasheet", "name"} & set(json.loads(rig.document).get("module", {}))
+    if not ways or not any(key.key.removeprefix("module.") in PARAMETERS for key in keys):
         return rig
-    nothing: dict[str, object] = {f"module.{way}": None for way in ("datasheet", "name") if way in table}
+    nothing: dict[str, object] = {f"module.{way}": None for way in ways}
     return rig.with_(**nothing, **{f"module.{name}": getattr(rig.module, name) for name in PARAMETERS})
 
 

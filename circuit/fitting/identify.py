@@ -11,7 +11,7 @@ from ..rig.faults import unit_of
 from ..rig.rig import Rig
 from .keys import CONTACT, value_of
 from .problem import FitProblem
-from .runs import Channel, Run
+from .runs import Channel
 from .solve import Solution, covariance_of
 
 T95 = 1.96
@@ -130,13 +130,10 @@ def with_channels(problem: FitProblem, theta: Array, columns: Sequence[str], onl
     found = problem.simulated(theta)
     runs = []
     for run, rows in zip(problem.runs, found, strict=True):
-        extra = tuple(
-            Channel(column, run.name, 0, run.time_s + run.begin_s, rows.at(column, run.time_s)) for column in columns
-        )
-        runs.append(
-            replace(run, channels=extra if only else (*run.channels, *extra), clocks=() if only else run.clocks)
-        )
-    return problem.again(problem.rig, problem.keys, tuple[Run, ...](runs))
+        kept, clocks, time_s = ((), (), run.time_s) if only else (run.channels, run.clocks, run.time_s)
+        extra = (Channel(each, run.name, 0, time_s + run.begin_s, rows.at(each, time_s)) for each in columns)
+        runs.append(replace(run, channels=(*kept, *extra), clocks=clocks))
+    return problem.again(problem.rig, problem.keys, tuple(runs))
 
 
 def expected_sd(problem: FitProblem, theta: Array) -> Array:

@@ -16,7 +16,6 @@ from .log import Log
 from .problem import OFFSET_SD_K, FitProblem
 from .runs import runs_of
 
-COLUMNS = ("display_C", "voltage_V")
 CHOICES = (
     ("display_C",),
     ("display_C", "voltage_V"),
@@ -38,7 +37,7 @@ def synthetic_log(
     rig: Rig,
     *,
     seed: int,
-    columns: Sequence[str] = COLUMNS,
+    columns: Sequence[str] = ("display_C", "voltage_V"),
     rate_Hz: float = 100.0,
     noise_K: float = NOISE_K,
     noise_V: float = NOISE_V,
@@ -91,11 +90,10 @@ def plan(
         problem = FitProblem.of(rig, possible_keys(rig), runs, offset_K, fixed_skin)
         free = tellable(with_channels(problem, problem.first, CHOICES[-1], only=True))
     problem = FitProblem.of(rig, free_keys(free, rig), runs, offset_K, fixed_skin)
-    return tuple(_expected(problem, columns) for columns in CHOICES)
-
-
-def _expected(problem: FitProblem, columns: tuple[str, ...]) -> Forecast:
-    deviations = expected_sd(with_channels(problem, problem.first, columns, only=True), problem.first)
-    each = [(key, float(sd)) for key, sd in zip(problem.keys, deviations, strict=True)]
-    widths = tuple(half_width(key.log, sd) for key, sd in each)
-    return Forecast(columns, problem.keys, widths, tuple(is_identified(key.log, sd, key.usual) for key, sd in each))
+    found = []
+    for columns in CHOICES:
+        deviations = expected_sd(with_channels(problem, problem.first, columns, only=True), problem.first).tolist()
+        each = list(zip(problem.keys, deviations, strict=True))
+        known = tuple(is_identified(key.log, sd, key.usual) for key, sd in each)
+        found.append(Forecast(columns, problem.keys, tuple(half_width(key.log, sd) for key, sd in each), known))
+    return tuple(found)

@@ -64,8 +64,23 @@ def _combined(problem: FitProblem, theta: Array, unknown: Sequence[FittedParamet
 
 def remarks(problem: FitProblem, theta: Array, *, misfit: bool = False) -> tuple[str, ...]:
     """Sentences on drives, starts, sensors and clocks; with a `misfit` an offset is a consequence and no fault."""
-    sentences = [*_slow_drives(problem), *unsteady(problem, theta)]
-    sentences += [_offset(channel, offset, problem.offset_sd_K, misfit) for channel, offset in far_off(problem, theta)]
+    sentences = [
+        f"{run.name}: rows are {1e3 * run.step_s:.0f} ms apart, and the rig's driver may change every "
+        f"{1e3 / problem.rig.update_Hz:.0f} ms: what it did in between is not in the log, and intervals allow for it; "
+        f"log the drive at its own rate, or state that rate where it is slower (driver.update_Hz)"
+        for run in problem.runs
+        if run.points
+    ]
+    sentences += unsteady(problem, theta)
+    usual = f"more than the {problem.offset_sd_K:g} K (SD) that sensors are assumed to be"
+    for channel, offset_K in far_off(problem, theta):
+        what, size = f"{channel.file}: {channel.column}", f"{offset_K:+.2f} K".replace("-", "−")
+        sentences.append(
+            f"{what} is fitted with an offset of {size}, {usual}; since the rig does not match the log, the offset may "
+            f"stand for what the rig has wrong: mend that before you doubt the sensor"
+            if misfit
+            else f"{what} reads {size} off, {usual}; calibrate it"
+        )
     for r, run in enumerate(problem.runs):
         for clock, name in enumerate(run.clocks, 1):
             shift = run.shifts[clock - 1] + problem.nuisance(theta, "shift", r, clock)
@@ -81,27 +96,6 @@ def far_off(problem: FitProblem, theta: Array) -> list[tuple[Channel, float]]:
     """Sensors that are off by more than they are assumed to be, with the offset in K."""
     offsets = [(channel, problem.nuisance(theta, "offset", r, c)) for r, c, channel in problem.channels()]
     return [(channel, offset) for channel, offset in offsets if abs(offset) > OFFSET_SDS * problem.offset_sd_K > 0]
-
-
-def _offset(channel: Channel, offset_K: float, usual_K: float, misfit: bool) -> str:
-    size = f"{offset_K:+.2f} K".replace("-", "−")
-    usual = f"more than the {usual_K:g} K (SD) that sensors are assumed to be"
-    if not misfit:
-        return f"{channel.file}: {channel.column} reads {size} off, {usual}; calibrate it"
-    return (
-        f"{channel.file}: {channel.column} is fitted with an offset of {size}, {usual}; since the rig does not match "
-        f"the log, the offset may stand for what the rig has wrong: mend that before you doubt the sensor"
-    )
-
-
-def _slow_drives(problem: FitProblem) -> list[str]:
-    return [
-        f"{run.name}: rows are {1e3 * run.step_s:.0f} ms apart, and the rig's driver may change every "
-        f"{1e3 / problem.rig.update_Hz:.0f} ms: what it did in between is not in the log, and intervals allow for it; "
-        f"log the drive at its own rate, or state that rate where it is slower (driver.update_Hz)"
-        for run in problem.runs
-        if run.points
-    ]
 
 
 def unsteady(problem: FitProblem, theta: Array) -> list[str]:

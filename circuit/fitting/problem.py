@@ -14,9 +14,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..arrays import Array
+from ..records import shipped_records
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..rig.skin import layer_spreads
 from .forward import Prediction, predict
 from .keys import FitError, FitKey, value_of
 from .runs import DISPLAY, Channel, Run
@@ -127,10 +127,8 @@ class FitProblem:
 
     def values(self, theta: Array) -> dict[str, float]:
         """Values of the free keys in the units of the rig file."""
-        return {
-            key.key: float(math.exp(place)) if key.log else float(place)
-            for key, place in zip(self.keys, theta, strict=False)
-        }
+        pairs = zip(self.keys, theta.tolist(), strict=False)
+        return {key.key: math.exp(place) if key.log else place for key, place in pairs}
 
     def factors(self, theta: Array) -> Factors:
         """Logarithms of what the layers of the skin are multiplied by; empty where they are not fitted along."""
@@ -274,7 +272,7 @@ def _along(runs: Sequence[Run], offset_sd_K: float) -> list[Unknown]:
 
 def layer_priors(rig: Rig) -> dict[tuple[str, int], float]:
     """Return the standard deviation of the logarithm of every layer's factors."""
-    known = {record.quantity: math.log1p(record.central) for record in layer_spreads()}
+    known = {record.quantity: math.log1p(record.central) for record in shipped_records("skin-spread.toml")}
     priors = {(kind, k): known[f"layer {kind} spread"] for k in range(len(rig.skin.layers)) for kind in LAYER_KINDS}
     return {**priors, (THICKNESS, 0): known["outermost layer thickness spread"]}
 

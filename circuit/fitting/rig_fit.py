@@ -19,7 +19,7 @@ from ..rig.rig import Rig
 from ..rig.settings import toml_text
 from ..rig.uncertainty import Uncertainty
 from .identify import FittedParameter
-from .keys import FitKey
+from .keys import FitError, FitKey
 from .overlay import OverlaidColumn
 from .problem import FitProblem
 
@@ -115,8 +115,6 @@ class RigFit(Tabled):
 
     def save(self, path: str | Path) -> None:
         """Write the fitted rig to a `.toml` file, by that file's name; FitError for a path that cannot be."""
-        from .keys import FitError
-
         where = Path(path)
         if where.suffix != ".toml":
             raise FitError(f"{where}: the name of a rig file ends in .toml; call it {where.name}.toml")

@@ -153,13 +153,15 @@ def _run(log: Log, driven_by: str, sensors: Sequence[Log], rig: Rig | None) -> R
         if rig is not None:
             _check_probes(each, rig)
     begin, step, alone = float(time[0]), float(np.median(np.diff(time))), driven_by == DISPLAY
-    columns = [(each, name, clock) for clock, each in enumerate((log, *sensors)) for name in each.measured]
-    channels = [
-        _channel(each, name, clock, part if not clock else slice(None))
-        for each, name, clock in columns
-        if _deeper(name) or not alone
-    ]
-    channels = [each for each in channels if each.values.size]
+    channels = []
+    for clock, each in enumerate((log, *sensors)):
+        rows = slice(None) if clock else part
+        for name in (name for name in each.measured if _deeper(name) or not alone):
+            values = each.column(name)[rows]
+            there = np.flatnonzero(np.isfinite(values))
+            there = there[:: max(1, -(-len(there) // MOST_READINGS))]
+            if there.size:
+                channels.append(Channel(name, each.name, clock, each.time_s[rows][there], values[there]))
     unknown, phase, points = None, None, False
     if alone:
         unknown = unknown_display(drive)
@@ -214,13 +216,6 @@ def _check_probes(log: Log, rig: Rig) -> None:
                 f"{log.name}: {column}: rig {rig.name} has no such probe{has}; say where it is by the key "
                 f"{probe} of the rig, or remove the column"
             )
-
-
-def _channel(log: Log, name: str, clock: int, part: slice) -> Channel:
-    time, values = log.time_s[part], log.column(name)[part]
-    there = np.flatnonzero(np.isfinite(values))
-    there = there[:: max(1, -(-len(there) // MOST_READINGS))]
-    return Channel(name, log.name, clock, time[there], values[there])
 
 
 def _check_gaps(name: str, column: str, time: Array, drive: Array, rows: Array) -> None:

@@ -28,13 +28,9 @@ def pump_of(table: RigTable) -> HeatPump | None:
         return None
     hot_side = _heat_sink(sink, table.ambient.temperature_C)
     lowest = -driver.current_limit_A if driver.current_min_A is None else driver.current_min_A
-    return HeatPump(
-        *module_of(module, (hot_side.temperature_C + table.skin.rest_C) / 2, table.source.get("module")),
-        hot_side,
-        Driver(
-            driver.transconductance_A_per_V, lowest, driver.current_limit_A, driver.voltage_limit_V, driver.update_Hz
-        ),
-    )
+    limits = lowest, driver.current_limit_A, driver.voltage_limit_V
+    found = module_of(module, (hot_side.temperature_C + table.skin.rest_C) / 2, table.source.get("module"))
+    return HeatPump(*found, hot_side, Driver(driver.transconductance_A_per_V, *limits, driver.update_Hz))
 
 
 def _heat_sink(table: HeatSinkTable, room_C: float) -> HeatSink:
@@ -48,25 +44,16 @@ def _heat_sink(table: HeatSinkTable, room_C: float) -> HeatSink:
     assert table.temperature_C is not None
     settings = {name: getattr(table, name) for name in CONTROLLED}
     missing = [name for name, value in settings.items() if value is None]
-    if not missing:
-        return HeatSink(table.temperature_C, table.resistance_K_per_W, SinkController(**settings))
-    if len(missing) < len(CONTROLLED):
+    if missing and len(missing) < len(CONTROLLED):
         raise ValueError(sentence("parts.controlled", key=missing[0], keys=", ".join(CONTROLLED)))
-    return HeatSink(table.temperature_C, table.resistance_K_per_W)
+    return HeatSink(table.temperature_C, table.resistance_K_per_W, None if missing else SinkController(**settings))
 
 
 def skin_of(table: SkinTable) -> Skin:
     """Return the skin of a rig file, with depths from its surface; raises ValueError for what cannot be."""
+    thickness = {"thickness_mm"}
     layers = tuple(
-        Layer(
-            layer.name,
-            layer.thickness_mm * 1e-3,
-            layer.conductivity_W_per_mK,
-            layer.density_kg_per_m3,
-            layer.heat_capacity_J_per_kgK,
-            layer.perfusion_per_s,
-        )
-        for layer in table.layer
+        Layer(thickness_m=each.thickness_mm * 1e-3, **each.model_dump(exclude=thickness)) for each in table.layer
     )
     has_corneum = layers[0].name == STRATUM_CORNEUM
     if table.depth_from == STRATUM_CORNEUM and not has_corneum:

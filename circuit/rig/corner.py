@@ -48,7 +48,9 @@ def perturbed(
         ambient = rig.ambient.model_copy(update={"temperature_C": rig.ambient.temperature_C + ambient_K})
         changed = replace(changed, ambient=ambient, deep_C=_deep_C(rig, ambient.temperature_C))
     if heat_sink_K:
-        changed = _pumped(changed, heat_sink=_warmer(rig.heat_sink, heat_sink_K))
+        sink, passive = rig.heat_sink, rig.heat_sink.passive
+        other_air = passive and replace(passive, air_C=passive.air_C + heat_sink_K)  # that is what it tends to
+        changed = _pumped(changed, replace(sink, temperature_C=sink.temperature_C + heat_sink_K, passive=other_air))
     if seebeck_relative or conductance_relative or plates_relative:
         changed = _pumped(changed, module=_module(rig, seebeck_relative, conductance_relative, plates_relative))
     # Caches are keyed by the document.
@@ -64,23 +66,13 @@ def with_gain(rig: Rig, gain_relative: float) -> Rig:
     document, driver, factor = json.loads(rig.document), rig.driver, 1.0 + gain_relative
     low, high = driver.current_min_A * factor, driver.current_max_A * factor
     document["driver"] |= {"current_min_A": low, "current_limit_A": high}
-    flowing = replace(driver, current_min_A=low, current_max_A=high)
-    return replace(
-        rig,
-        pump=replace(rig.pump, driver=flowing),
-        document=json.dumps(document, sort_keys=True, ensure_ascii=False),
-    )
+    pump = replace(rig.pump, driver=replace(driver, current_min_A=low, current_max_A=high))
+    return replace(rig, pump=pump, document=json.dumps(document, sort_keys=True, ensure_ascii=False))
 
 
-def _pumped(rig: Rig, *, heat_sink: HeatSink | None = None, module: Peltier | None = None) -> Rig:
+def _pumped(rig: Rig, heat_sink: HeatSink | None = None, module: Peltier | None = None) -> Rig:
     assert rig.pump is not None
     return replace(rig, pump=replace(rig.pump, heat_sink=heat_sink or rig.heat_sink, module=module or rig.module))
-
-
-def _warmer(sink: HeatSink, shift_K: float) -> HeatSink:
-    """The heat sink at another temperature; a passive one in other air too, since that is what it tends to."""
-    passive = sink.passive and replace(sink.passive, air_C=sink.passive.air_C + shift_K)
-    return replace(sink, temperature_C=sink.temperature_C + shift_K, passive=passive)
 
 
 def _deep_C(rig: Rig, ambient_C: float) -> float:

@@ -1,4 +1,4 @@
-"""The Peltier module: heat absorbed, voltage, parameters from a data sheet.
+"""The Peltier module: voltage, parameters from a data sheet.
 
 Equations: Lineykin & Ben-Yaakov, IEEE Trans. Ind. Appl. 43 (2007) 505, and their four-figure form, exact in Qmax.
 Current is positive when it cools the skin side.
@@ -36,11 +36,6 @@ class Peltier:
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0):
                 raise ValueError(f"module.{name} = {value}: must be a positive number")
-
-    def heat_absorbed_W(self, current_A: float, cold_C: float, hot_C: float) -> float:
-        """Heat taken from the skin side in W: αTcI − I²R/2 − (Th − Tc)/Θ."""
-        pumped = self.seebeck_V_per_K * (cold_C + ZERO_C_IN_K) * current_A
-        return pumped - current_A**2 * self.resistance_ohm / 2 - (hot_C - cold_C) / self.thermal_resistance_K_per_W
 
     def voltage_V(self, current_A: float, cold_C: float, hot_C: float) -> float:
         """Voltage at the module in V: α(Th − Tc) + IR."""

@@ -9,19 +9,7 @@ from .faults import PARAMETERS, Unusual, sentence, unusual
 from .module import Datasheet, Extraction, Peltier, at_mean_C
 from .rigfile import ModuleTable
 
-COLUMNS = (
-    "module",
-    "origin",
-    "couples",
-    "footprint_mm",
-    "plate_J_per_K",
-    "t_hot_C",
-    "i_max_A",
-    "v_max_V",
-    "q_max_W",
-    "dt_max_K",
-)
-FIGURES = ("cm²", "J/K", "hot °C", "Imax A", "Vmax V", "Qmax W", "ΔTmax K")
+COLUMNS = ("module", "origin", "couples", "footprint_mm", "plate_J_per_K", *Datasheet.model_fields)
 ONE_STAGE = 0.03
 """Share by which ΔTmax may miss the printed one: single-stage sheets come within 0.008, a two-stage one has 0.19."""
 LEAST_APART_K = 1.0
@@ -76,10 +64,8 @@ def module_rows() -> list[tuple[str, ...]]:
 
 def load_module(name: str) -> tuple[Datasheet, ...]:
     """Return the data sheets of a shipped module, coolest hot side first; raises RecordError that names all."""
-    sheets = [
-        Datasheet.model_validate({key: record.get(key) for key in Datasheet.model_fields}) for record in _records(name)
-    ]
-    return tuple(sorted(sheets, key=lambda sheet: sheet.t_hot_C))
+    columns = [{key: record.get(key) for key in Datasheet.model_fields} for record in _records(name)]
+    return tuple(sorted(map(Datasheet.model_validate, columns), key=lambda sheet: sheet.t_hot_C))
 
 
 def _records(name: str) -> list[Record]:

@@ -108,8 +108,14 @@ class Rig:
 
     @staticmethod
     def of(rig: AnyRig, site: str | None = None) -> Rig:
-        """A rig as it is, or that of a name or file; None: the usual rig for icons of this site."""
-        return rig if isinstance(rig, Rig) else Rig.load(usual_rig(site) if rig is None else rig)
+        """A rig as it is, or that of a name or file; None: the shipped one of the name of this site, or thenar.
+
+        >>> [Rig.of(None, site).name for site in ("fingertip", "cheek", "tcs2", None)]
+        ['fingertip', 'thenar', 'thenar', 'thenar']
+        """
+        if rig is None:
+            rig = site if site in rig_names() and Rig.load(site).site == site else "thenar"
+        return rig if isinstance(rig, Rig) else Rig.load(rig)
 
     @staticmethod
     @checked
@@ -241,15 +247,6 @@ def rig_names() -> tuple[str, ...]:
     """Return the names of the shipped rigs, which `Rig.load` accepts, the default first."""
     names = [path.name.removesuffix(".toml") for path in _rig_folder().iterdir() if path.name.endswith(".toml")]
     return tuple(sorted(names, key=lambda name: (name != "thenar", name)))
-
-
-def usual_rig(site: str | None) -> str:
-    """Name the shipped rig for icons of a site, unless another is given: that of the same name, or thenar.
-
-    >>> usual_rig("fingertip"), usual_rig("cheek"), usual_rig("tcs2"), usual_rig(None)
-    ('fingertip', 'thenar', 'thenar', 'thenar')
-    """
-    return site if site in rig_names() and Rig.load(site).site == site else "thenar"
 
 
 def _rig_folder() -> Any:

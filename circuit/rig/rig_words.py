@@ -50,8 +50,7 @@ def rig_summary(rig: Rig, for_methods: bool = False) -> str:
         low, driver = signed(rig.driver.current_min_A), rig.driver
         limits = f"{low} … {driver.current_max_A:g} A, {driver.voltage_limit_V:g} V at most"
         rows.append(("driver", f"{limits}, updated at {driver.update_Hz:g} Hz"))
-    head = f"{rig.name}: {rig.title}" if rig.title and not named else rig.name
-    lines = [head]
+    lines = [f"{rig.name}: {rig.title}" if rig.title and not named else rig.name]
     for label, text in rows:
         said, first = text.rstrip(".") if for_methods else text, f"  {label:<11}"
         lines += textwrap.wrap(said, WIDTH, initial_indent=first, subsequent_indent=" " * 13)
@@ -61,17 +60,11 @@ def rig_summary(rig: Rig, for_methods: bool = False) -> str:
 def _rows(rig: Rig) -> list[tuple[str, str]]:
     flux = -rig.resting_flux_W_per_m2
     how = "from the heat balance" if rig.skin.deep_C is None else "given"
-    skin = [
-        (
-            "rest",
-            f"skin {rig.skin.rest_C:.1f} °C, blood and deep tissue {rig.deep_C:.2f} °C ({how}), "
-            f"{abs(flux):.0f} W/m² {'lost' if flux >= 0 else 'taken up'} by bare skin",
-        ),
-        ("receptors", rig.skin.receptor_words()),
-    ]
+    lost = f"{abs(flux):.0f} W/m² {'lost' if flux >= 0 else 'taken up'} by bare skin"
     return [
         ("site", f"{rig.site}, {rig.contact.area_m2 * 1e4:g} cm² in contact{_resistance(rig.contact)}"),
-        *skin,
+        ("rest", f"skin {rig.skin.rest_C:.1f} °C, blood and deep tissue {rig.deep_C:.2f} °C ({how}), {lost}"),
+        ("receptors", rig.skin.receptor_words()),
         ("module", rig.module_source) if rig.thermode is None else ("thermode", _thermode(rig.thermode)),
     ]
 
@@ -116,9 +109,9 @@ def _slips(rig: Rig) -> Iterator[Unusual]:
     values = {"contact.area_cm2": 1e4 * rig.contact.area_m2}
     if rig.pump is not None:
         values["driver.transconductance_A_per_V"] = rig.driver.transconductance_A_per_V
-    if skin.layers[0].name == STRATUM_CORNEUM:
-        values["skin.layer.thickness_mm of the stratum corneum"] = 1e3 * skin.layers[0].thickness_m
-    above_m = skin.layers[0].thickness_m if skin.depth_from == STRATUM_CORNEUM else 0.0
+    if skin.corneum_m:
+        values["skin.layer.thickness_mm of the stratum corneum"] = 1e3 * skin.corneum_m
+    above_m = skin.corneum_m if skin.depth_from == STRATUM_CORNEUM else 0.0
     for name, depth_m in (("cold", skin.cold_receptor_m), ("warm", skin.warm_receptor_m)):
         values[f"skin.{name}_receptor_mm"] = 1e3 * (depth_m - above_m)
     for key, value in values.items():

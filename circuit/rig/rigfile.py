@@ -8,36 +8,9 @@ from pydantic import BaseModel, Field, ValidationError
 
 from thermicon.icons.near_words import did_you_mean, nearest_words
 
-from ..inputs import (
-    LONGEST_NAME,
-    InputError,
-    Place,
-    key_faults,
-    read_toml,
-)
-from .faults import (
-    CONTROLLED,
-    PARAMETERS,
-    Amperes,
-    Celsius,
-    Conductivity,
-    Density,
-    Film,
-    Gain,
-    HeatCapacity,
-    Ideal,
-    KeyTable,
-    Lag,
-    Millimetres,
-    Name,
-    Paragraph,
-    Perfusion,
-    Positive,
-    Text,
-    Volts,
-    sentence,
-    unit_of,
-)
+from ..inputs import LONGEST_NAME, InputError, Place, key_faults, read_toml
+from . import faults as kinds
+from .faults import CONTROLLED, PARAMETERS, KeyTable, sentence, unit_of
 from .module import Datasheet
 from .rules import faults_of
 from .uncertainty import Uncertainty
@@ -64,13 +37,13 @@ MOST_LAYERS, MOST_PROBES, MOST_NOTES = 50, 100, 100
 class ModuleTable(KeyTable):
     """The Peltier module, given by three parameters, data sheets or a shipped name, and its two plates."""
 
-    seebeck_V_per_K: Ideal | None = None
-    resistance_ohm: Ideal | None = None
-    thermal_resistance_K_per_W: Ideal | None = None
+    seebeck_V_per_K: kinds.Ideal | None = None
+    resistance_ohm: kinds.Ideal | None = None
+    thermal_resistance_K_per_W: kinds.Ideal | None = None
     datasheet: list[Datasheet] | None = None
-    name: Name | None = None
-    hot_plate_J_per_K: Ideal
-    cold_plate_J_per_K: Ideal
+    name: kinds.Name | None = None
+    hot_plate_J_per_K: kinds.Ideal
+    cold_plate_J_per_K: kinds.Ideal
 
     def faults(self) -> Iterable[str]:
         """Given in no way or in two, or by too few parameters or too many sheets."""
@@ -90,13 +63,13 @@ class ModuleTable(KeyTable):
 class HeatSinkTable(KeyTable):
     """The heat sink under the hot plate."""
 
-    temperature_C: Celsius | None = None
-    resistance_K_per_W: Ideal
-    capacity_J_per_K: Ideal | None = None
+    temperature_C: kinds.Celsius | None = None
+    resistance_K_per_W: kinds.Ideal
+    capacity_J_per_K: kinds.Ideal | None = None
     air_resistance_K_per_W: Annotated[float, Field(ge=1e-3, le=1e6)] | None = None
-    air_C: Celsius | None = None
-    kp_W_per_K: Gain | None = None
-    ki_W_per_Ks: Gain | None = None
+    air_C: kinds.Celsius | None = None
+    kp_W_per_K: kinds.Gain | None = None
+    ki_W_per_Ks: kinds.Gain | None = None
     power_limit_W: Annotated[float, Field(ge=1e-6, le=1e6)] | None = None
 
     def faults(self) -> Iterable[str]:
@@ -117,9 +90,9 @@ class DriverTable(KeyTable):
     """The current source and its limits."""
 
     transconductance_A_per_V: Annotated[float, Field(ge=1e-6, le=1000)] = 0.1
-    current_limit_A: Amperes
+    current_limit_A: kinds.Amperes
     current_min_A: Annotated[float, Field(ge=-1000)] | None = None
-    voltage_limit_V: Volts
+    voltage_limit_V: kinds.Volts
     update_Hz: Annotated[float, Field(ge=1, le=10_000)] = 100
 
 
@@ -133,10 +106,10 @@ class ContactTable(KeyTable):
 class Controller(KeyTable):
     """A PID loop on the display: thermistor lag s, gains A/K, A/(K·s), and A·s/K on the measured temperature."""
 
-    lag_s: Lag = 0.0
-    kp_A_per_K: Gain
-    ki_A_per_Ks: Gain = 0.0
-    kd_As_per_K: Gain = 0.0
+    lag_s: kinds.Lag = 0.0
+    kp_A_per_K: kinds.Gain
+    ki_A_per_Ks: kinds.Gain = 0.0
+    kd_As_per_K: kinds.Gain = 0.0
 
 
 class Thermode(KeyTable):
@@ -145,11 +118,11 @@ class Thermode(KeyTable):
     It stands in place of module, heat sink, driver and controller; a step of 0 K means continuous set-points.
     """
 
-    slew_K_per_s: Positive
-    lag_s: Lag = 0.0
+    slew_K_per_s: kinds.Positive
+    lag_s: kinds.Lag = 0.0
     resolution_K: Annotated[float, Field(ge=0, le=10)] = 0.0
-    lowest_C: Celsius
-    highest_C: Celsius
+    lowest_C: kinds.Celsius
+    highest_C: kinds.Celsius
     update_Hz: Annotated[float, Field(ge=1, le=10_000)] = 100
 
     def faults(self) -> Iterable[str]:
@@ -161,30 +134,30 @@ class Thermode(KeyTable):
 class Ambient(KeyTable):
     """The air that bare skin rests in: temperature °C, film W/(m²·K)."""
 
-    temperature_C: Celsius
-    film_W_per_m2K: Film
+    temperature_C: kinds.Celsius
+    film_W_per_m2K: kinds.Film
 
 
 class LayerTable(KeyTable):
     """One layer of tissue."""
 
-    name: Name
-    thickness_mm: Millimetres
-    conductivity_W_per_mK: Conductivity
-    density_kg_per_m3: Density
-    heat_capacity_J_per_kgK: HeatCapacity
-    perfusion_per_s: Perfusion = 0.0
+    name: kinds.Name
+    thickness_mm: kinds.Millimetres
+    conductivity_W_per_mK: kinds.Conductivity
+    density_kg_per_m3: kinds.Density
+    heat_capacity_J_per_kgK: kinds.HeatCapacity
+    perfusion_per_s: kinds.Perfusion = 0.0
 
 
 class SkinTable(KeyTable):
     """The skin under the display, surface first."""
 
-    site: Text
+    site: kinds.Text
     rest_C: Annotated[float, Field(ge=10, le=45)]
-    cold_receptor_mm: Millimetres | None = None
-    warm_receptor_mm: Millimetres | None = None
+    cold_receptor_mm: kinds.Millimetres | None = None
+    warm_receptor_mm: kinds.Millimetres | None = None
     depth_from: Literal["surface", "stratum corneum"] | None = None
-    deep_C: Celsius | None = None
+    deep_C: kinds.Celsius | None = None
     elements: list[Annotated[int, Field(ge=1, le=200)]] | None = None
     layer: Annotated[list[LayerTable], Field(min_length=1, max_length=MOST_LAYERS)]
 
@@ -192,39 +165,39 @@ class SkinTable(KeyTable):
 class BloodTable(KeyTable):
     """Blood that perfuses the layers."""
 
-    density_kg_per_m3: Density
-    heat_capacity_J_per_kgK: HeatCapacity
+    density_kg_per_m3: kinds.Density
+    heat_capacity_J_per_kgK: kinds.HeatCapacity
 
 
 class ProbeTable(KeyTable):
     """A point whose temperature is recorded."""
 
-    name: Text
+    name: kinds.Text
     place: Literal["display", "interface", "skin"]
     depth_mm: Annotated[float, Field(ge=0, le=200)] = 0.0
-    lag_s: Lag = 0.0
+    lag_s: kinds.Lag = 0.0
 
 
 class SafetyTable(KeyTable):
     """Limits in place of the shipped ones; looser ones need a reason."""
 
-    skin_lowest_C: Celsius | None = None
-    skin_highest_C: Celsius | None = None
-    skin_lowest_soft_C: Celsius | None = None
-    skin_highest_soft_C: Celsius | None = None
-    skin_change_soft_K: Positive | None = None
-    receptor_lowest_C: Celsius | None = None
-    receptor_highest_C: Celsius | None = None
-    display_lowest_C: Celsius | None = None
-    display_highest_C: Celsius | None = None
-    display_lowest_soft_C: Celsius | None = None
-    display_highest_soft_C: Celsius | None = None
-    skin_rate_K_per_s: Positive | None = None
-    hot_plate_highest_C: Celsius | None = None
-    thermal_dose_min_CEM43: Positive | None = None
-    henriques_integral: Positive | None = None
-    session_min: Positive | None = None
-    reason: Text = ""
+    skin_lowest_C: kinds.Celsius | None = None
+    skin_highest_C: kinds.Celsius | None = None
+    skin_lowest_soft_C: kinds.Celsius | None = None
+    skin_highest_soft_C: kinds.Celsius | None = None
+    skin_change_soft_K: kinds.Positive | None = None
+    receptor_lowest_C: kinds.Celsius | None = None
+    receptor_highest_C: kinds.Celsius | None = None
+    display_lowest_C: kinds.Celsius | None = None
+    display_highest_C: kinds.Celsius | None = None
+    display_lowest_soft_C: kinds.Celsius | None = None
+    display_highest_soft_C: kinds.Celsius | None = None
+    skin_rate_K_per_s: kinds.Positive | None = None
+    hot_plate_highest_C: kinds.Celsius | None = None
+    thermal_dose_min_CEM43: kinds.Positive | None = None
+    henriques_integral: kinds.Positive | None = None
+    session_min: kinds.Positive | None = None
+    reason: kinds.Text = ""
 
     @property
     def changes(self) -> dict[str, float]:
@@ -241,9 +214,9 @@ class RigTable(KeyTable):
     """A whole rig file."""
 
     format: Literal[1]
-    name: Annotated[Name, Field(max_length=LONGEST_NAME)]
-    title: Text = ""
-    notes: Annotated[list[Paragraph], Field(max_length=MOST_NOTES)] = Field(default_factory=list)
+    name: Annotated[kinds.Name, Field(max_length=LONGEST_NAME)]
+    title: kinds.Text = ""
+    notes: Annotated[list[kinds.Paragraph], Field(max_length=MOST_NOTES)] = Field(default_factory=list)
     module: ModuleTable | None = None
     heat_sink: HeatSinkTable | None = None
     driver: DriverTable | None = None
@@ -256,7 +229,7 @@ class RigTable(KeyTable):
     probe: Annotated[list[ProbeTable], Field(max_length=MOST_PROBES)] = Field(default_factory=list)
     uncertainty: Uncertainty = Field(default_factory=Uncertainty)
     safety: SafetyTable = Field(default_factory=SafetyTable)
-    source: dict[Text, Paragraph] = Field(default_factory=dict)
+    source: dict[kinds.Text, kinds.Paragraph] = Field(default_factory=dict)
 
     def faults(self) -> Iterable[str]:
         """A module with its parts, or a thermode: never both."""

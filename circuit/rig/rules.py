@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
+
+from thermicon.icons.number_text import unit_text
 
 from ..records import Record, RecordTable, shipped_records
 from .faults import sentence
@@ -140,16 +143,21 @@ def faults_of(changes: Mapping[str, float], reason: str = "") -> list[str]:
     if not changes:
         return []
     changes = dict(changes)
-    session = changes.pop(SESSION_KEY, None)
-    timing = None if session is None else session_fault(session, reason)
+    shipped = Limits.shipped().session_s / 60.0
+    minutes = changes.pop(SESSION_KEY, shipped)
+    faults = []
+    if not 1.0 <= minutes <= LONGEST_SESSION_MIN:
+        faults.append(f"safety.{SESSION_KEY} = {minutes:g} min: must be 1 to {LONGEST_SESSION_MIN:g} min")
+    elif minutes < shipped and not is_reason(reason):  # a shorter session sums fewer plays
+        faults.append(sentence("faults.session", key=SESSION_KEY, minutes=minutes, shipped=shipped))
     unknown = [key for key in changes if key not in safety_keys()]
-    faults = [] if timing is None else [timing]
     faults += [f"safety.{key}: no such limit; there is {', '.join(safety_keys())}" for key in unknown]
     reported = {key for key in changes if key in unknown}
-    for rule in _changed(changes, reason).rules:
+    rules = _changed(changes, reason).rules
+    for rule in rules:
         if rule.key not in changes or rule.key in reported:
             continue
-        value, unit = changes[rule.key], f" {rule.unit}" if rule.unit != "1" else ""
+        value, unit = changes[rule.key], unit_text(rule.unit)
         subject = f"safety.{rule.key} = {value:g}{unit}"
         bound = rule.shipped if rule.bound is None else rule.bound
         if rule.limit > bound if rule.upper else rule.limit < bound:
@@ -162,7 +170,12 @@ def faults_of(changes: Mapping[str, float], reason: str = "") -> list[str]:
             reported.add(rule.key)
             limit, least = f"{abs(rule.shipped):g}{unit}", {"letters": SHORTEST_REASON, "words": FEWEST_WORDS}
             faults.append(sentence("faults.looser", subject=subject, limit=limit, **least))
-    return faults + _crossed(changes, reason)
+    for low, high in itertools.product(rules, rules):
+        pair = not low.upper and high.upper and low.key != high.key
+        same = (low.quantity, low.severity, low.relative) == (high.quantity, high.severity, high.relative)
+        if pair and same and low.limit >= high.limit:
+            faults.append(sentence("faults.crossed", low=low, high=high))
+    return faults
 
 
 def is_reason(text: str) -> bool:
@@ -171,31 +184,10 @@ def is_reason(text: str) -> bool:
     return len(text.strip()) >= SHORTEST_REASON and len(words) >= FEWEST_WORDS
 
 
-def session_fault(minutes: float, reason: str) -> str | None:
-    """The fault in the length of a session in min; None where there is none. A shorter session sums fewer plays."""
-    shipped = Limits.shipped().session_s / 60.0
-    if not 1.0 <= minutes <= LONGEST_SESSION_MIN:
-        return f"safety.{SESSION_KEY} = {minutes:g} min: must be 1 to {LONGEST_SESSION_MIN:g} min"
-    if minutes < shipped and not is_reason(reason):
-        return sentence("faults.session", key=SESSION_KEY, minutes=minutes, shipped=shipped)
-    return None
-
-
-def _crossed(changes: Mapping[str, float], reason: str) -> list[str]:
-    rules, faults = _changed(changes, reason).rules, []
-    for low in rules:
-        for high in rules:
-            pair = not low.upper and high.upper and low.key != high.key
-            same = (low.quantity, low.severity, low.relative) == (high.quantity, high.severity, high.relative)
-            if pair and same and low.limit >= high.limit:
-                faults.append(sentence("faults.crossed", low=low, high=high))
-    return faults
-
-
 def _in_words(rules: Iterable[Rule]) -> tuple[str, ...]:
     texts = {}
     for rule in rules:
-        unit = f" {rule.unit}" if rule.unit != "1" else ""
+        unit = unit_text(rule.unit)
         texts[rule.key] = f"{rule.key} {abs(rule.limit):g}{unit} instead of {abs(rule.shipped):g}{unit}"
     return tuple(texts.values())
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..arrays import Array
-from ..records import RecordTable, shipped_records
+from ..records import shipped_records
 from .faults import sentence
 
 STRATUM_CORNEUM = "stratum corneum"
@@ -23,11 +23,6 @@ Chosen with `meshstudy` in `docs/explain/source_paper` over two cues, six drives
 within 5 mK of a converged mesh at receptor depth on a 6 °C, 3 °C/s cue, and within 20 mK on 20 s drives that swing the
 display by 30 to 50 °C.
 """
-
-
-def layer_spreads() -> RecordTable:
-    """How the layers of people's skin differ from those of a rig file, each with its source."""
-    return shipped_records("skin-spread.toml")
 
 
 def usual_depth_mm(channel: str) -> float:
@@ -101,9 +96,9 @@ class Skin:
         """Where the receptors lie, from the surface and from the base of the stratum corneum, as papers count them."""
         depths = {"cold": self.cold_receptor_m * 1e3, "warm": self.warm_receptor_m * 1e3}
         text = ", ".join(f"{name} {depth:.3g} mm" for name, depth in depths.items()) + " below the surface"
-        if self.layers[0].name != STRATUM_CORNEUM:
+        if not self.corneum_m:
             return text
-        base = {name: round(depth - self.layers[0].thickness_m * 1e3, 9) for name, depth in depths.items()}
+        base = {name: round(depth - self.corneum_m * 1e3, 9) for name, depth in depths.items()}
         below = [f"{name} {abs(depth):.3g} mm {'above' if depth < 0 else 'below'}" for name, depth in base.items()]
         return f"{text}; {', '.join(below)} the base of the {STRATUM_CORNEUM}"
 
@@ -153,8 +148,7 @@ def column_of(
 
 def _graded(skin: Skin, blood: float, first: float, growth: float) -> SkinColumn:
     boundaries = np.cumsum([0.0] + [layer.thickness_m for layer in skin.layers])
-    fixed = np.concatenate([boundaries, [skin.cold_receptor_m, skin.warm_receptor_m]])
-    fixed = np.sort(fixed)
+    fixed = np.sort(np.concatenate([boundaries, [skin.cold_receptor_m, skin.warm_receptor_m]]))
     fixed = fixed[np.concatenate([[True], np.diff(fixed) > 1e-9])]
     depths = [0.0]
     for top, bottom in itertools.pairwise(fixed.tolist()):

@@ -151,12 +151,11 @@ def cures_of(findings: Sequence[Check]) -> tuple[Cure, ...]:
 
 def worst_of(groups: Iterable[Sequence[Check]]) -> tuple[Check, ...]:
     """From several groups of checks of the same rules, the worst check of each rule; the first of equals."""
-    return tuple(_farthest(same) for same in zip(*groups, strict=True))
-
-
-def _farthest(same: Sequence[Check]) -> Check:
-    most = max(check.beyond for check in same)
-    return next(check for check in same if check.beyond >= most - LEVEL)
+    worst = []
+    for same in zip(*groups, strict=True):
+        most = max(check.beyond for check in same)
+        worst.append(next(check for check in same if check.beyond >= most - LEVEL))
+    return tuple(worst)
 
 
 class Judged:
@@ -292,13 +291,6 @@ class Demands:
     faults: tuple[SingleFault, ...]
     current_limit_A: tuple[float, float] | None = None
     loop: Loop | None = None
-
-    def __repr__(self) -> str:
-        cut = self.cut_off_display_C
-        return (
-            f"Demands(watchdog {self.watchdog_s:g} s, cut-off {cut.low:g} … {cut.high:g} °C within "
-            f"{cut.react_within_s:g} s, {len(self.faults)} single faults)"
-        )
 
     @property
     def within_s(self) -> tuple[float, float]:

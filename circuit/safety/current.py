@@ -26,7 +26,7 @@ from .ensemble import Ensemble, LaneDrives, row_of
 from .plant import ENDING_ROWS_S, LATE_S, LATER_S, OFF_ROWS_S, Future, Plant, Single, Stretch
 from .playmap import MOST_STEPS, PlayMap, bound, least_bound, steady_cycle
 from .repeated import Repeating
-from .single_faults import instants
+from .single_faults import instants, side_by_side
 from .tally import COLDEST_C, HOTTEST_C, WATCHED, Tally, worst_of_lanes
 
 ENDINGS = ("last value held", "zero current", "power off")
@@ -198,26 +198,22 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         of: int,
     ) -> list[Tally]:
         """Tallies of one of the plays after each of them; sums over time are not taken."""
-        before = list(self._before(plays, pause_s, steady, of))
-        states = State(*(np.concatenate([getattr(state, part) for state, _ in before]) for part in ("nodes_C", "sink")))
+        before = list[tuple[State, Before]]()
+        for number, (play, settled) in enumerate(zip(plays, steady, strict=True)):
+            start = self.rest(play)
+            if number == of:
+                waits = (pause_s, *(pause_s + more_s for more_s in LONGER_S))
+                before += [(self.after(play, wait_s, start), Before("once", wait_s)) for wait_s in waits]
+            else:
+                before.append((self.after(play, pause_s, start), Before("another", pause_s)))
+                before.append((self.after(play, pause_s, settled), Before("others", pause_s)))
+        states = side_by_side([state for state, _ in before])
         tallies = [Tally(limits, self.corners, Scenario(before=what), begun_C=begun_C) for _, what in before]
         rigs, count = np.tile(self.ensemble.lanes, len(before)), len(self.corners)
         for (rows, values), _ in self.ensemble.play(plays[of].drive, states, rigs):
             for k, tally in enumerate(tallies):
                 tally.add(rows, values[:, k * count : (k + 1) * count], sums=False)
         return tallies
-
-    def _before(
-        self, plays: Sequence[CurrentPlay], pause_s: float, steady: Sequence[State], of: int
-    ) -> Iterator[tuple[State, Before]]:
-        for number, (play, settled) in enumerate(zip(plays, steady, strict=True)):
-            start = self.rest(play)
-            if number == of:
-                for longer_s in (pause_s, *(pause_s + more_s for more_s in LONGER_S)):
-                    yield self.after(play, longer_s, start), Before("once", longer_s)
-            else:
-                yield self.after(play, pause_s, start), Before("another", pause_s)
-                yield self.after(play, pause_s, settled), Before("others", pause_s)
 
     def demanded(
         self,

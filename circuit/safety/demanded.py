@@ -44,7 +44,11 @@ def demanded(
     act on plays. A set that no pause makes safe is judged with the longest.
     """
     display = [check.value for single in singles for check in single.checks if check.quantity == "display"]
-    reach_C, faults = (min(display), max(display)), [_faulty(plant, single, repeating.limits) for single in singles]
+    reach_C, faults = (min(display), max(display)), list[Faulty]()
+    for single in singles:
+        drive, rest_A = single.play.drive, float(single.play.rest_A)
+        assert isinstance(drive, Drive)
+        faults.append(Faulty(plant.ensemble, drive, rest_A, single.start, repeating.limits))
     held = held_C(plant.rig, repeating.limits)
     begin_s = LONGEST_PAUSE_S if shortest_s is None else shortest_s
     beginning = Beginning.of(repeating, begin_s, max(recovered_s))
@@ -53,7 +57,10 @@ def demanded(
     def after(pause_s: float) -> list[Faulty]:
         return [replace(one, bounds=starts_of(pause_s).bounds) for one in faults]
 
-    reach_of = cache(lambda pause_s: _joined([reach_C, *(one.shown_C for one in after(pause_s))]))
+    @cache
+    def reach_of(pause_s: float) -> Span:
+        lows, highs = zip(reach_C, *(one.shown_C for one in after(pause_s)), strict=True)
+        return min(lows), max(highs)
 
     def ends(pause_s: float, beyond_K: float) -> Span:
         return around_C(repeating.limits, reach_of(pause_s), held, beyond_K)
@@ -180,16 +187,6 @@ def _demands(
         zero = None if zero >= limits.session_s else float(math.floor(zero))
     faults = found.hangs, begins, swapped, stuck
     return Demands(found.watchdog_s, cut_off, polarity, rest_s, pause_s, zero, faults)
-
-
-def _faulty(plant: CurrentPlant, single: Single[CurrentPlay, State], limits: Limits) -> Faulty:
-    play = single.play
-    assert isinstance(play.drive, Drive)
-    return Faulty(plant.ensemble, play.drive, float(play.rest_A), single.start, limits)
-
-
-def _joined(spans: Sequence[Span]) -> Span:
-    return min(low for low, _ in spans), max(high for _, high in spans)
 
 
 def polarity_check(faulty: Faulty) -> tuple[PolarityCheck, SingleFault]:

@@ -205,8 +205,10 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         beginning = Beginning.of(repeating, pause_s, max(recovered_s))
         starts = cache(beginning.after)
 
-        def quickest(pause_s: float) -> list[tuple[float, float]]:
-            return [each.quickest_s for each in self._faults(repeating, starts(pause_s))]
+        def quickest(pause_s: float) -> Array:
+            """How quickly a watchdog and a cut-off must act for each drive, in s."""
+            pairs = [(each.hangs, each.stuck) for each in self._faults(repeating, starts(pause_s))]
+            return MARGIN * np.array([[min(time for _, time in levels) for levels in pair] for pair in pairs])
 
         if shortest_s is not None:
             longest_s = max(shortest_s, *recovered_s)
@@ -265,12 +267,6 @@ class _Faults:
 
     hangs: list[tuple[float, float]]
     stuck: list[tuple[float, float]]
-
-    @property
-    def quickest_s(self) -> tuple[float, float]:
-        """How quickly a watchdog and a cut-off must act, in s."""
-        hang, stuck = (MARGIN * min(time for _, time in each) for each in (self.hangs, self.stuck))
-        return hang, stuck
 
     def demands(self, ends_C: Span, pause_s: float | None, rest_s: float | None, at_once: Sequence[Check]) -> Demands:
         """Demands on the device itself, with a cut-off at two temperatures."""

@@ -87,9 +87,7 @@ class Ensemble:
     def at_rest(self, rest_A: float | Array) -> State:
         """Steady states under a current, or each lane's; hottest where a corner has none, RigError for the rig."""
         rests = np.broadcast_to(rest_A, len(self.corners)).tolist()
-        states = self.bank.states(
-            [self._steady(corner, rest) for corner, rest in zip(self.corners, rests, strict=True)]
-        )
+        states = self.bank.states(list(map(self._steady, self.corners, rests)))
         check_sink(self.rig, states[0])
         return State.settled(states)
 

@@ -176,9 +176,14 @@ def gate(
     >>> gate(ended, rig, rest_A=plan.rest_A).safe
     True
     """
-    return gate_set(
-        [(drive, _rest_of(drive, rest_A, bridge_A))], Rig.of(rig), bridge_A=bridge_A, limits=limits, pause_s=pause_s
-    )[0]
+    if rest_A is None:
+        if bridge_A is not None:
+            raise DriveError("the mean current of rest is needed where a bridge switches; give rest_A")
+        rest_A = float(drive.current_A[0])
+    elif not np.isfinite(rest_A) or (bridge_A is not None and abs(rest_A) > bridge_A):
+        most = "" if bridge_A is None else f" of at most {bridge_A:g} A"
+        raise DriveError(f"a rest of {rest_A:g} A is not possible; it must be a finite current{most}")
+    return gate_set([(drive, rest_A)], Rig.of(rig), bridge_A=bridge_A, limits=limits, pause_s=pause_s)[0]
 
 
 def gate_set(
@@ -224,17 +229,6 @@ def gate_shown(
     if not module:
         rules = replace(rules, rules=tuple(rule for rule in rules.rules if rule.quantity != "hot plate"))
     return _gated(drives, DisplayPlant.of(rig, stuck_C, rates=not module), rules, pause_s)
-
-
-def _rest_of(drive: Drive, rest_A: float | None, bridge_A: float | None) -> float:
-    if rest_A is None:
-        if bridge_A is not None:
-            raise DriveError("the mean current of rest is needed where a bridge switches; give rest_A")
-        return float(drive.current_A[0])
-    if not np.isfinite(rest_A) or (bridge_A is not None and abs(rest_A) > bridge_A):
-        most = "" if bridge_A is None else f" of at most {bridge_A:g} A"
-        raise DriveError(f"a rest of {rest_A:g} A is not possible; it must be a finite current{most}")
-    return rest_A
 
 
 def _gated(

@@ -41,10 +41,9 @@ STAYS = (
 def held_C(rig: Rig, limits: Limits) -> Span:
     """Between which temperatures in °C a display may stay without limit of time, in all corners of contact and room."""
     low, high = -math.inf, math.inf
-    levels = (0.0, 1.0)
     for corner in contact_corners(rig):
         modes = modes_of(corner.rig)
-        at_0, at_1 = (modes.relax(np.zeros(1), level, modes.steady(level))[:, 0] for level in levels)
+        at_0, at_1 = (modes.relax(np.zeros(1), level, modes.steady(level))[:, 0] for level in (0.0, 1.0))
         for rule in limits.rules:
             if rule.severity == "hard" and not rule.relative and rule.above_C is None and rule.quantity in COLUMN_OF:
                 row = FELT.index(COLUMN_OF[rule.quantity])

@@ -58,9 +58,8 @@ class PlayMap:
         warmer[1:, :free] = np.eye(free)
         begun = (start.nodes_C[:, np.newaxis] + warmer).reshape(-1, nodes)
         rigs = np.repeat(np.arange(corners, dtype=np.int64), free + 1)
-        ended = ensemble.end_of(drive, State.settled(begun), rigs).nodes_C.reshape(corners, free + 1, nodes)[
-            :, :, :free
-        ]
+        ended = ensemble.end_of(drive, State.settled(begun), rigs).nodes_C
+        ended = ended.reshape(corners, free + 1, nodes)[:, :, :free]
         matrix = np.swapaxes(ended[:, 1:] - ended[:, :1], 1, 2)
         return PlayMap(matrix, ended[:, 0] - np.einsum("cij,cj->ci", matrix, start.nodes_C[:, :free]))
 
@@ -71,9 +70,8 @@ class PlayMap:
 
     def then(self, other: PlayMap) -> PlayMap:
         """First this map, then another."""
-        return PlayMap(
-            other.matrix @ self.matrix, np.einsum("cij,cj->ci", other.matrix, self.constant) + other.constant
-        )
+        constant = np.einsum("cij,cj->ci", other.matrix, self.constant) + other.constant
+        return PlayMap(other.matrix @ self.matrix, constant)
 
     def only(self, corners: list[int]) -> PlayMap:
         """The map of some rigs."""

@@ -49,9 +49,6 @@ class Repeated(Judged):
     checks: tuple[Check, ...]
     faultless_pause_s: float | None = None
 
-    def __repr__(self) -> str:
-        return f"Repeated({self.colour}: {self.plays} plays with {self.pause_s:g} s between them)"
-
     @property
     def colour(self) -> str:
         """Green, amber or red."""
@@ -181,8 +178,15 @@ def shortest_pause_s(repeating: Repeating[Played, States]) -> float | None:
             return pause_s
         more = {lane % count for tally in after for lane in tally.worst_lanes()}
         if more <= deciding:
-            return _later(repeating, pause_s)
+            break
         deciding |= more
+    added = max(PAUSE_STEP_S, 0.02 * pause_s)
+    while pause_s < LONGEST_PAUSE_S:  # a longer one, in steps that grow from 2 %
+        pause_s = min(math.ceil((pause_s + added) / PAUSE_STEP_S) * PAUSE_STEP_S, LONGEST_PAUSE_S)
+        if repeating.safe(pause_s):
+            return round(pause_s, 1)
+        added *= 3
+    return None
 
 
 def lengthened_s(shortest_s: float, longest_s: float, safe: Callable[[float], bool]) -> float:
@@ -198,17 +202,6 @@ def lengthened_s(shortest_s: float, longest_s: float, safe: Callable[[float], bo
     tried = [math.ceil(pause / PAUSE_STEP_S - 1e-9) * PAUSE_STEP_S for pause in pauses[:-1]]
     place = bisect_left(tried, 1, key=lambda pause_s: int(safe(pause_s)))
     return min(longest_s, round(tried[place], 1)) if place < len(tried) else longest_s
-
-
-def _later(repeating: Repeating[Played, States], pause_s: float) -> float | None:
-    """A longer pause that is safe in all corners and with all endings; steps grow from 2 %."""
-    added = max(PAUSE_STEP_S, 0.02 * pause_s)
-    while pause_s < LONGEST_PAUSE_S:
-        pause_s = min(math.ceil((pause_s + added) / PAUSE_STEP_S) * PAUSE_STEP_S, LONGEST_PAUSE_S)
-        if repeating.safe(pause_s):
-            return round(pause_s, 1)
-        added *= 3
-    return None
 
 
 def shortest_of(safe: Callable[[float], bool]) -> float | None:

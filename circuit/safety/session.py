@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -105,7 +105,9 @@ def read_order(path: str | Path, icons: IconSet) -> tuple[str, ...]:
     where = Path(path)
     names: list[str] = []
     known: set[str] = set()
-    for line, name in _words(read_text(where, "file of an order", ORDER_MB, SessionError)):
+    lines = enumerate(read_text(where, "file of an order", ORDER_MB, SessionError).splitlines(), 1)
+    words = ((line, word.strip()) for line, text in lines for word in text.partition("#")[0].split(","))
+    for line, name in ((line, word) for line, word in words if word):
         if name not in known:
             try:
                 known.add(icons[name].name)
@@ -133,13 +135,6 @@ def check_length(durations_s: Sequence[float], gap_s: float) -> float:
             f"fewer, shorten the gap, or split the session"
         )
     return total
-
-
-def _words(text: str) -> Iterator[tuple[int, str]]:
-    for line, content in enumerate(text.splitlines(), 1):
-        for word in content.partition("#")[0].split(","):
-            if word.strip():
-                yield line, word.strip()
 
 
 def _check_count(plays: int, what: str) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from math import isnan
 
@@ -98,36 +98,6 @@ _CODE_OF = {
 }
 """Quantities of rules, other than the time of the display above a temperature."""
 
-Flags = npt.NDArray[np.bool_]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Rules:
-    """Rules as the kernel expects them: codes of quantities (q,), and what each rule is about (rules,)."""
-
-    code: Index
-    above_C: Array
-    rule_of: Index
-    limit: Array
-    relative: Flags
-    upper: Flags
-    hard: Flags
-
-    @staticmethod
-    def of(rules: Sequence[Rule]) -> _Rules:
-        """The rules of limits, in their order."""
-        first = {rule.quantity: rule for rule in reversed(rules)}
-        names = list(first)
-        return _Rules(
-            np.array([_code_of(rule) for rule in first.values()], dtype=np.int64),
-            np.array([rule.above_C or 0.0 for rule in first.values()]),
-            np.array([names.index(rule.quantity) for rule in rules], dtype=np.int64),
-            np.array([float(rule.limit) for rule in rules]),
-            np.array([rule.relative for rule in rules], dtype=np.bool_),
-            np.array([rule.upper for rule in rules], dtype=np.bool_),
-            np.array([rule.severity == "hard" for rule in rules], dtype=np.bool_),
-        )
-
 
 class Tally:
     """Runs of some lanes, each a corner or a name, against every rule, added stretch by stretch.
@@ -145,10 +115,18 @@ class Tally:
         plays: int = 1,
         begun_C: Array | None = None,
     ) -> None:
-        self.limits, self.lanes, self.run, self.plays = limits, lanes, run, plays
-        self._begun, self._rules = begun_C, _Rules.of(limits.rules)
-        shape = len(limits.rules), len(lanes)
-        self._sums = np.zeros((len(self._rules.code), len(lanes)))
+        self.limits, self.lanes, self.run, self.plays, self._begun = limits, lanes, run, plays, begun_C
+        # As the kernel expects them: codes of quantities (q,), and what each rule is about (rules,).
+        rules, first = limits.rules, {rule.quantity: rule for rule in reversed(limits.rules)}
+        self._code = np.array([_code_of(rule) for rule in first.values()], dtype=np.int64)
+        self._above_C = np.array([rule.above_C or 0.0 for rule in first.values()])
+        self._rule_of = np.array([list(first).index(rule.quantity) for rule in rules], dtype=np.int64)
+        self._limit = np.array([float(rule.limit) for rule in rules])
+        self._relative = np.array([rule.relative for rule in rules], dtype=np.bool_)
+        self._upper = np.array([rule.upper for rule in rules], dtype=np.bool_)
+        self._hard = np.array([rule.severity == "hard" for rule in rules], dtype=np.bool_)
+        shape = len(rules), len(lanes)
+        self._sums = np.zeros((len(first), len(lanes)))
         self._present = np.zeros(len(limits.rules), dtype=np.bool_)
         self._value, self._at_s, self._since_s = np.zeros(shape), np.zeros(shape), np.full(shape, np.nan)
 
@@ -160,11 +138,11 @@ class Tally:
         from .tally_kernel import count
 
         if self._begun is None:
-            self._begun = _finite(watched[0, :, 0])
-        rules = self._rules
+            begun = np.nan_to_num(watched[0, :, 0], nan=HOTTEST_C, posinf=HOTTEST_C, neginf=COLDEST_C)
+            self._begun = np.clip(begun, COLDEST_C, HOTTEST_C)
         count(
-            time_s, np.ascontiguousarray(watched), rules.code, rules.above_C, constants(), SPAN_C, LEVEL,
-            float(self.plays), rules.rule_of, rules.limit, rules.relative, rules.upper, rules.hard, rates, sums, drift,
+            time_s, np.ascontiguousarray(watched), self._code, self._above_C, constants(), SPAN_C, LEVEL,
+            float(self.plays), self._rule_of, self._limit, self._relative, self._upper, self._hard, rates, sums, drift,
             self._begun, self._sums, self._present, self._value, self._at_s, self._since_s,
         )  # fmt: skip
 
@@ -191,30 +169,30 @@ class Tally:
     def summed(self, quantity: str) -> Array:
         """Sum of a quantity over time in each lane (lanes,)."""
         place = next(k for k, rule in enumerate(self.limits.rules) if rule.quantity == quantity)
-        return np.asarray(self._sums[self._rules.rule_of[place]])
+        return np.asarray(self._sums[self._rule_of[place]])
 
     def worst_lanes(self) -> tuple[int, ...]:
         """Lanes that are worst by some hard rule, each once."""
-        return tuple(dict.fromkeys(self._worst()[self._present & self._rules.hard].tolist()))
+        return tuple(dict.fromkeys(self._worst()[self._present & self._hard].tolist()))
 
     def beyond(self) -> Array:
         """Excess over each rule in each lane (rules, lanes), as `checks.beyond` of its check."""
         nothing = np.array([check.value for check in map(self._nothing, self.limits.rules)])
-        limit = np.where(self._present[:, np.newaxis], self._limits(), self._rules.limit[:, np.newaxis])
+        limit = np.where(self._present[:, np.newaxis], self._limits(), self._limit[:, np.newaxis])
         value = np.where(self._present[:, np.newaxis], self._value, nothing[:, np.newaxis])
-        return np.where(self._rules.upper[:, np.newaxis], value - limit, limit - value)
+        return np.where(self._upper[:, np.newaxis], value - limit, limit - value)
 
     def passes(self) -> bool:
         """Whether no lane exceeds a hard limit."""
-        return bool(np.isnan(self._since_s[self._rules.hard]).all())
+        return bool(np.isnan(self._since_s[self._hard]).all())
 
     def _limits(self) -> Array:
-        limit, begun = self._rules.limit[:, np.newaxis], 0.0 if self._begun is None else self._begun
-        return np.where(self._rules.relative[:, np.newaxis], begun + limit, limit + np.zeros(len(self.lanes)))
+        limit, begun = self._limit[:, np.newaxis], 0.0 if self._begun is None else self._begun
+        return np.where(self._relative[:, np.newaxis], begun + limit, limit + np.zeros(len(self.lanes)))
 
     def _worst(self) -> Index:
         """The lane that is worst by each rule (rules,), the first of equals."""
-        side = np.where(self._rules.upper, 1.0, -1.0)[:, np.newaxis]
+        side = np.where(self._upper, 1.0, -1.0)[:, np.newaxis]
         return np.asarray(np.argmax(side * (self._value - self._limits()), axis=1))
 
     def _check(self, rule: Rule, lane: int, value: float, at_s: float, since_s: float, limit: float) -> Check:
@@ -254,8 +232,3 @@ def _code_of(rule: Rule) -> int:
     if rule.quantity not in _CODE_OF:
         raise ValueError(f"{rule.quantity}: a limit that nothing computes; give the quantity a code in safety/tally.py")
     return _CODE_OF[rule.quantity]
-
-
-def _finite(values: Array) -> Array:
-    known = np.nan_to_num(values, nan=HOTTEST_C, posinf=HOTTEST_C, neginf=COLDEST_C)
-    return np.clip(known, COLDEST_C, HOTTEST_C)

@@ -23,10 +23,6 @@ class SafetyVerdict(Judged):
 
     checks: tuple[Check, ...]
 
-    def __repr__(self) -> str:
-        exceeded = ", ".join(f"{check.quantity} {check.figures[0]} {check.unit}" for check in self.findings)
-        return f"SafetyVerdict({self.colour}{f': {exceeded}' if exceeded else ''})"
-
     def to_dict(self) -> dict[str, object]:
         """Colour and findings in the form of a sidecar."""
         return {"colour": self.colour, "findings": [each.to_dict() for each in self.findings]}
@@ -123,7 +119,8 @@ def summarise(trace: Trace) -> Summary:
     """
     outcome, verdict = trace.outcome, judge_safety(trace)
     reasons = [reason for reason in (None if outcome is None else outcome.reason, verdict.reason) if reason]
-    extremes: dict[str, Any] = {}
+    misses = ("reached", "largest_miss_K", "largest_miss_s", "rms_miss_K")
+    extremes: dict[str, Any] = {name: outcome and getattr(outcome, name) for name in misses}
     for field in fields(Summary):
         for side, extreme in (("_min_", np.min), ("_max_", np.max)):
             if side in field.name:
@@ -131,10 +128,6 @@ def summarise(trace: Trace) -> Summary:
                 extremes[field.name] = None if isnan(value) else value
     return Summary(
         duration_s=float(trace.time_s[-1]),
-        reached=None if outcome is None else outcome.reached,
-        largest_miss_K=None if outcome is None else outcome.largest_miss_K,
-        largest_miss_s=None if outcome is None else outcome.largest_miss_s,
-        rms_miss_K=None if outcome is None else outcome.rms_miss_K,
         energy_J=energy_J(trace) if trace.has_current else None,
         safe=verdict.safe,
         safety=verdict.colour,

@@ -10,10 +10,10 @@ from importlib import resources
 from math import isnan
 from typing import Any
 
-from thermicon.icons.number_text import signed, significant
+from thermicon.icons.number_text import signed, significant, unit_text
 
 from ..rig.uncertainty import WORDS
-from .checks import Before, Check, Cure, Harm, Scenario, SingleFault, cures_of, hard_of
+from .checks import Check, Cure, Harm, Scenario, SingleFault, cures_of, hard_of
 from .plant import ENDING_S
 from .repeated import PRACTICAL_S, Repeated
 
@@ -30,8 +30,10 @@ CURES: dict[Cure, str] = {
     "smaller": "a smaller or shorter change",
 }
 
-REPEATED = {"cycle": "", "warm": " (warm bound)", "cold": " (cold bound)"}
 BEFORE = {
+    "cycle": "repeated plays with {pause}",
+    "warm": "repeated plays with {pause} (warm bound)",
+    "cold": "repeated plays with {pause} (cold bound)",
     "once": "second play after {pause}",
     "another": "after another play and {pause}",
     "others": "after repeated plays of another and {pause}",
@@ -51,16 +53,10 @@ def corner_text(deviations: tuple[float, ...]) -> str:
 
 def scenario_text(run: Scenario) -> str:
     """A scenario: the corner, the way in which it is played, what was played before, and what follows."""
-    corner = run.corner if isinstance(run.corner, str) else corner_text(run.corner)
-    before = "" if run.before is None else _before(run.before)
-    return ", ".join(part for part in (corner, run.way, before, run.ending and f"then {run.ending}") if part)
-
-
-def _before(before: Before) -> str:
-    pause = f"{before.pause_s:.4g} s of pause"
-    if before.plays in REPEATED:
-        return f"repeated plays with {pause}{REPEATED[before.plays]}"
-    return BEFORE[before.plays].format(pause=pause)
+    corner, before, told = run.corner if isinstance(run.corner, str) else corner_text(run.corner), run.before, ""
+    if before is not None:
+        told = BEFORE[before.plays].format(pause=f"{before.pause_s:.4g} s of pause")
+    return ", ".join(part for part in (corner, run.way, told, run.ending and f"then {run.ending}") if part)
 
 
 def figures(check: Check) -> tuple[str, str]:
@@ -75,7 +71,7 @@ def check_text(check: Check) -> str:
     """A check in one sentence."""
     scenario = check.scenario
     where = f", with {scenario}" if scenario else ""
-    value, limit = (f"{figure}{_unit(check)}" for figure in figures(check))
+    value, limit = (f"{figure}{unit_text(check.unit)}" for figure in figures(check))
     at = "" if isnan(check.time_s) else f" at {check.time_s:.2f} s"
     reached = f"{check.quantity} reaches {value}{at}{where}"
     of_limit = f"{'above' if check.upper else 'below'} the {check.severity} limit of {limit}{check.note}"
@@ -93,7 +89,7 @@ def hard_reason(findings: Sequence[Check]) -> str | None:
 def more_and_cure(findings: Sequence[Check]) -> str:
     """The end of a refusal's text: every other exceeded hard limit, and what would cure all of them."""
     others = [
-        f"{check.quantity} {value}{_unit(check)} (limit {limit})"
+        f"{check.quantity} {value}{unit_text(check.unit)} (limit {limit})"
         for check in hard_of(findings)[1:]
         for value, limit in (figures(check),)
     ]
@@ -116,10 +112,6 @@ def repeated_reason(repeated: Repeated) -> str | None:
     if shortest is None:
         return f"{reason}; no pause up to 10 min makes that safe: use a smaller or shorter change"
     return f"{reason}; the shortest safe pause is {shortest:g} s"
-
-
-def _unit(check: Check) -> str:
-    return "" if check.unit == "1" else f" {check.unit}"
 
 
 @cache

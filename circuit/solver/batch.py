@@ -34,6 +34,9 @@ class Batch:
     probes: tuple[str, ...]
     values: Array
 
+    def __post_init__(self) -> None:
+        self.values.setflags(write=False)
+
     def __repr__(self) -> str:
         _, rigs, icons, rows = self.values.shape
         return f"Batch({icons} icons on {rigs} rigs, {rows} rows, {self.time_s[-1]:g} s: {', '.join(self.probes)})"
@@ -112,7 +115,7 @@ def simulate_many(
         raise RigError(f"a batch cannot end at {end_s:g} s; it must be above 0")
     if nominal.thermode is not None or any(rig.thermode is not None for rig in on):
         rows = rows_until(end_s, rate_Hz)
-        return _frozen(rows, probes, displays_on(icons, on, nominal, rows, tracking, probes))
+        return Batch(rows, tuple(probes), displays_on(icons, on, nominal, rows, tracking, probes))
     if len({rig.controller is None for rig in (*on, nominal)}) > 1:
         raise RigError("rigs of one batch must all have a controller, or none")
     if len({rig.driver.update_Hz for rig in (*on, nominal)}) > 1:
@@ -132,11 +135,6 @@ def simulate_many(
             values[:, :, places] = stage.replay(cues)
         else:
             values[:, :, places] = stage.track(cues, control, way)
-    return _frozen(rows, probes, values)
-
-
-def _frozen(rows: Array, probes: Sequence[str], values: Array) -> Batch:
-    values.setflags(write=False)
     return Batch(rows, tuple(probes), values)
 
 

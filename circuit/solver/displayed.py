@@ -20,7 +20,7 @@ from .inverse import baseline_C, steps_at, target_at
 from .modes import FELT, SkinModes, modes_of, modes_on, shown
 from .network import skin_network_of
 from .probes import readings_of, sensed
-from .trace import Outcome, Trace, judge
+from .trace import Outcome, Trace, judge, of_rig
 
 FINEST_S = 0.01
 """Longer updates are divided into equal parts of at most this, so that lag and skin are resolved within them."""
@@ -123,13 +123,9 @@ def trace_of_display(
     nothing = np.full(len(rows), np.nan)
     return Trace(
         icon=icon,
-        rig_name=rig.name,
-        site=rig.site,
-        area_m2=rig.contact.area_m2,
         driver_limits_A=(math.nan, math.nan),
         control=control,
         outcome=outcome,
-        warnings=rig.warnings,
         beyond=(),
         time_s=rows,
         current_A=nothing,
@@ -137,8 +133,7 @@ def trace_of_display(
         target_C=target_C,
         hot_plate_C=nothing.copy(),
         probes=tuple((name, _at(rows, times, row)) for name, row in probes),
-        limits=rig.limits,
-        rig=rig,
+        **of_rig(rig),
         **felt,
     )
 

@@ -97,7 +97,14 @@ def design(icon: Icon, rig: AnyRig, end_s: float) -> Design:
     plan = design_ideal(icon, rig, end_s)
     if rig.controller is None or icon.context.control == "current":
         return plan
-    return close_loop(rig, plan, icon, target_at(icon, baseline_C(icon, rig), periods(rig, end_s)))
+    # The currents of the rig's own PID loop, whose set-point is the display of the cue, or that of the ideal plan.
+    period, control, base = 1.0 / rig.driver.update_Hz, icon.context.control, baseline_C(icon, rig)
+    target = target_at(icon, base, periods(rig, end_s))
+    setpoint = _along(rig, plan, "display_C")[:-1] if control == "skin" else np.concatenate([[base], target[:-1]])
+    currents, reached, why = regulated(rig, bank_of(rig), setpoint, (plan.rest_A, plan.start_C))
+    loop = replace(plan, drive=Drive(plan.drive.time_s, [*currents, currents[-1]], held=True))
+    controlled = _along(rig, loop, "skin_C")[1:] if control == "skin" else reached
+    return replace(loop, outcome=judge(target, controlled, period, _limits(why, period), steps_at(icon, base)))
 
 
 def design_ideal(icon: Icon, rig: Rig, end_s: float) -> Design:
@@ -160,18 +167,6 @@ def regulated(
     period, bias = 1.0 / rig.driver.update_Hz, np.array([rest[0]])
     found = run_regulate(bank, lane, lane, period, goals_C[np.newaxis], gains, bias, bank.states([rest[1]]))
     return found[0][0], found[1][0], found[2][0]
-
-
-def close_loop(rig: Rig, plan: Design, icon: Icon, target: Array) -> Design:
-    """The currents of the rig's own PID loop for a cue, whose set-point is its display, or that of the ideal `plan`."""
-    period, control, base = 1.0 / rig.driver.update_Hz, icon.context.control, baseline_C(icon, rig)
-    setpoint = _along(rig, plan, "display_C")[:-1] if control == "skin" else np.concatenate([[base], target[:-1]])
-    currents, reached, why = regulated(rig, bank_of(rig), setpoint, (plan.rest_A, plan.start_C))
-    drive = Drive(plan.drive.time_s, [*currents, currents[-1]], held=True)
-    loop = Design(drive, plan.rest_A, plan.start_C, None)
-    controlled = _along(rig, loop, "skin_C")[1:] if control == "skin" else reached
-    outcome = judge(target, controlled, period, _limits(why, period), steps_at(icon, base))
-    return replace(loop, outcome=outcome)
 
 
 def _along(rig: Rig, plan: Design, probe: str) -> Array:

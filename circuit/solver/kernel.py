@@ -22,26 +22,7 @@ import numpy as np
 
 from ..compiled import kernel
 from ..rig.module import ZERO_C_IN_K
-from .network import (
-    ALPHA,
-    COLD_J_PER_K,
-    CONDUCTANCE,
-    DEEP_C,
-    HOT_J_PER_K,
-    INTEGRAL,
-    POWER,
-    RESISTANCE,
-    REST_POWER,
-    SINK_AIR_W_PER_K,
-    SINK_C,
-    SINK_J_PER_K,
-    SINK_KI,
-    SINK_KP,
-    SINK_NUMBERS,
-    SINK_POWER_W,
-    SINK_W_PER_K,
-    TEMPERATURE,
-)
+from . import network as net
 
 compiled = kernel(nogil=True, fastmath={"contract"}, error_model="numpy")
 inlined = kernel(nogil=True, fastmath={"contract"}, error_model="numpy", forceinline=True)
@@ -64,8 +45,6 @@ COLD_SHARE, MEET, HOT_STORE, COLD_STORE, SINK_SHARE = range(5)
 """Factors (5, lane) of a step that belong to no single lump: weight of the cold plate in the first lump, factor where
 the halves meet, C/(δ/2) of both plates in W/K, and weight of the hot plate in the heat sink (0 where it is ideal)."""
 
-THIRD = 1.0 / 3.0
-
 
 @compiled
 def place_of(k, n, h, lane, lanes):
@@ -84,7 +63,7 @@ def room(wide, bank):
     lanes, h = len(wide), (bank[2].shape[1] + 1) // 2
     return (
         np.zeros((LUMPS + h, 2 * lanes)), np.empty((bank[1].shape[1], lanes)), np.empty((3, 2 * h + 1, lanes)),
-        np.zeros((SINK_NUMBERS, lanes)), np.empty((h + 2, 2 * lanes)), np.empty(2 * lanes), np.empty(lanes),
+        np.zeros((net.SINK_NUMBERS, lanes)), np.empty((h + 2, 2 * lanes)), np.empty(2 * lanes), np.empty(lanes),
     )  # fmt: skip
 
 
@@ -112,18 +91,18 @@ def begin(wide, block, rig_of, bank, state, x, p, skin, sink):
         for k in range(len(p)):
             p[k, lane] = plates[r, k]
         for k in range(n + 2):
-            flat[place_of(k, n, h, lane, lanes)] = state[block[lane], k] - p[DEEP_C, lane]
+            flat[place_of(k, n, h, lane, lanes)] = state[block[lane], k] - p[net.DEEP_C, lane]
         for i in range(n):
             cap[i, lane], g[i, lane], perf[i, lane] = capacity[r, i], conductance[r, i], perfusion[r, i]
         perf[n - 1, lane] += conductance[r, n]
-        for k in range(SINK_NUMBERS):  # a slice as target would compile the text of its errors as well
+        for k in range(net.SINK_NUMBERS):  # a slice as target would compile the text of its errors as well
             sink[k, lane] = 0.0
-        sink[TEMPERATURE, lane] = p[SINK_C, lane]
-        if p[SINK_AIR_W_PER_K, lane] > 0.0:
-            sink[TEMPERATURE, lane] = state[block[lane], n + 2]
-        elif p[SINK_J_PER_K, lane] > 0.0:
-            power = -p[SINK_W_PER_K, lane] * (state[block[lane], 0] - p[SINK_C, lane])
-            sink[POWER, lane] = sink[REST_POWER, lane] = power
+        sink[net.TEMPERATURE, lane] = p[net.SINK_C, lane]
+        if p[net.SINK_AIR_W_PER_K, lane] > 0.0:
+            sink[net.TEMPERATURE, lane] = state[block[lane], n + 2]
+        elif p[net.SINK_J_PER_K, lane] > 0.0:
+            power = -p[net.SINK_W_PER_K, lane] * (state[block[lane], 0] - p[net.SINK_C, lane])
+            sink[net.POWER, lane] = sink[net.REST_POWER, lane] = power
     return h
 
 
@@ -167,9 +146,10 @@ def factor(wide, h, half, p, skin, rows, whole):
             keep[i, lane], link[i, lane], back[i, lane] = store * inverse, above * inverse, from_cold[lane]
     for lane in range(lanes):
         whole[MEET, lane] = 1.0 / (1.0 - back[h - 1, lane] * back[h - 1, lanes + lane])
-        whole[HOT_STORE, lane], whole[COLD_STORE, lane] = p[HOT_J_PER_K, lane] / half, p[COLD_J_PER_K, lane] / half
-        sink_store = p[SINK_J_PER_K, lane] / half + p[SINK_W_PER_K, lane] + p[SINK_AIR_W_PER_K, lane]
-        whole[SINK_SHARE, lane] = p[SINK_W_PER_K, lane] / sink_store if p[SINK_J_PER_K, lane] > 0.0 else 0.0
+        whole[HOT_STORE, lane] = p[net.HOT_J_PER_K, lane] / half
+        whole[COLD_STORE, lane] = p[net.COLD_J_PER_K, lane] / half
+        sink_store = p[net.SINK_J_PER_K, lane] / half + p[net.SINK_W_PER_K, lane] + p[net.SINK_AIR_W_PER_K, lane]
+        whole[SINK_SHARE, lane] = p[net.SINK_W_PER_K, lane] / sink_store if p[net.SINK_J_PER_K, lane] > 0.0 else 0.0
 
 
 @compiled
@@ -190,11 +170,11 @@ def regulate_sink(step, p, sink):
     The sink then obeys C_s·dT_s/dt = P + (T_h − T_s)/R_s, which `advance` steps together with the plates.
     The integral is not advanced while the power is at a limit and the error would push it further (anti-windup).
     """
-    error = p[SINK_C] - sink[TEMPERATURE]
-    power = sink[REST_POWER] + p[SINK_KP] * error + p[SINK_KI] * sink[INTEGRAL]
-    sink[POWER] = min(max(power, -p[SINK_POWER_W]), p[SINK_POWER_W])
-    if power == sink[POWER] or power * error < 0.0:
-        sink[INTEGRAL] += error * step
+    error = p[net.SINK_C] - sink[net.TEMPERATURE]
+    power = sink[net.REST_POWER] + p[net.SINK_KP] * error + p[net.SINK_KI] * sink[net.INTEGRAL]
+    sink[net.POWER] = min(max(power, -p[net.SINK_POWER_W]), p[net.SINK_POWER_W])
+    if power == sink[net.POWER] or power * error < 0.0:
+        sink[net.INTEGRAL] += error * step
 
 
 @inlined
@@ -215,21 +195,21 @@ def advance(wide, h, step, current, squared, p, g0, x, y, total, first, sink, ro
             regulate_sink(step, p[:, lane], sink[:, lane])
     for lane in range(lanes):
         hot0, cold0, kelvin, leak = (
-            x[PLATES, lane], x[PLATES, lanes + lane], ZERO_C_IN_K + p[DEEP_C, lane], p[CONDUCTANCE, lane],
+            x[PLATES, lane], x[PLATES, lanes + lane], ZERO_C_IN_K + p[net.DEEP_C, lane], p[net.CONDUCTANCE, lane],
         )  # fmt: skip
-        pump, joule = p[ALPHA, lane] * current[lane], 0.5 * p[RESISTANCE, lane] * squared[lane]
+        pump, joule = p[net.ALPHA, lane] * current[lane], 0.5 * p[net.RESISTANCE, lane] * squared[lane]
         share = whole[SINK_SHARE, lane]  # the heat sink's in its own implicit step: 0 where it is ideal
         hot_store, cold_store, out = (
-            whole[HOT_STORE, lane], whole[COLD_STORE, lane], p[SINK_W_PER_K, lane] * (1.0 - share),
+            whole[HOT_STORE, lane], whole[COLD_STORE, lane], p[net.SINK_W_PER_K, lane] * (1.0 - share),
         )  # fmt: skip
-        sink_K = sink[TEMPERATURE, lane] - p[DEEP_C, lane]
+        sink_K = sink[net.TEMPERATURE, lane] - p[net.DEEP_C, lane]
         a11, a22 = hot_store + out + leak - pump, cold_store + leak + pump + g0[lane] * (1.0 - whole[COLD_SHARE, lane])
-        b1 = hot_store * hot0 + out * sink_K + share * sink[POWER, lane] + pump * kelvin + joule
+        b1 = hot_store * hot0 + out * sink_K + share * sink[net.POWER, lane] + pump * kelvin + joule
         b2 = cold_store * cold0 - pump * kelvin + joule + g0[lane] * first[lane]
         inverse = 1.0 / (a11 * a22 - leak * leak)  # both off-diagonal elements are −1/Θ
         hot, cold = (b1 * a22 + leak * b2) * inverse, (a11 * b2 + leak * b1) * inverse
         x[PLATES, lane], x[PLATES, lanes + lane] = 2.0 * hot - hot0, 2.0 * cold - cold0
-        sink[TEMPERATURE, lane] += 2.0 * share * (sink[POWER, lane] / p[SINK_W_PER_K, lane] + hot - sink_K)
+        sink[net.TEMPERATURE, lane] += 2.0 * share * (sink[net.POWER, lane] / p[net.SINK_W_PER_K, lane] + hot - sink_K)
         y[0, lane], y[0, lanes + lane] = cold, 0.0
     for j in range(h):  # elimination of both halves, towards their meeting
         for c in range(2 * lanes):
@@ -270,15 +250,15 @@ def forward(
         h = begin(wide, block, rig_of, bank, state, x, p, skin, sink)
         for lane in range(lanes):
             r = rig_of[block[lane]]
-            if p[SINK_AIR_W_PER_K, lane] == 0.0 and not math.isnan(sinks[block[lane], TEMPERATURE]):
-                for k in range(SINK_NUMBERS):
+            if p[net.SINK_AIR_W_PER_K, lane] == 0.0 and not math.isnan(sinks[block[lane], net.TEMPERATURE]):
+                for k in range(net.SINK_NUMBERS):
                     sink[k, lane] = sinks[block[lane], k]
             for q in range(probes):
                 weight[q, 3, lane] = 0.0
                 for j in range(3):
                     at[q, j, lane] = place_of(places[r, q] + j, bank[0][r], h, lane, lanes)
                     weight[q, j, lane] = weights[r, q, j]
-                    weight[q, 3, lane] += weights[r, q, j] * p[DEEP_C, lane]
+                    weight[q, 3, lane] += weights[r, q, j] * p[net.DEEP_C, lane]
         factored, since = -1.0, 0.0
         for k in range(edges.size):
             row = row_of[k]
@@ -309,16 +289,16 @@ def forward(
                     c = cue_of[block[lane]]
                     begins, rise = start_A[k, c], end_A[k, c] - start_A[k, c]
                     i, e = begins + rise * early, begins + rise * late
-                    current[lane], squared[lane] = 0.5 * (i + e), (i * i + i * e + e * e) * THIRD
+                    current[lane], squared[lane] = 0.5 * (i + e), (i * i + i * e + e * e) * (1.0 / 3.0)
                 advance(wide, h, step, current, squared, p, skin[1, 0], x, y, total, first, sink, rows, whole)
                 done += step
                 since += step
         for lane in range(lanes):
-            n, deep, last = bank[0][rig_of[block[lane]]], p[DEEP_C, lane], final[block[lane]]
-            for k in range(SINK_NUMBERS):
+            n, deep, last = bank[0][rig_of[block[lane]]], p[net.DEEP_C, lane], final[block[lane]]
+            for k in range(net.SINK_NUMBERS):
                 sinks[block[lane], k] = sink[k, lane]
             for k in range(n + 2):
                 last[k] = flat[place_of(k, n, h, lane, lanes)] + deep
             last[n + 2] = deep
-            if p[SINK_AIR_W_PER_K, lane] > 0.0:
-                last[n + 2], last[n + 3] = sink[TEMPERATURE, lane], deep
+            if p[net.SINK_AIR_W_PER_K, lane] > 0.0:
+                last[n + 2], last[n + 3] = sink[net.TEMPERATURE, lane], deep

@@ -10,37 +10,11 @@ import math
 import numpy as np
 
 from ..rig.module import ZERO_C_IN_K
-from . import network
-from .kernel import (
-    COLD_SHARE,
-    LONGEST_STEP_S,
-    LUMPS,
-    PLATES,
-    WEIGHT,
-    advance,
-    begin,
-    compiled,
-    factor,
-    room,
-    weighed,
-)
-from .network import (
-    ALPHA,
-    COLD_J_PER_K,
-    COMPLIANCE_V,
-    CONDUCTANCE,
-    DEEP_C,
-    HIGHEST_A,
-    HOT_J_PER_K,
-    LOWEST_A,
-    PAST_MOST_COOLING,
-    RESISTANCE,
-    SINK_W_PER_K,
-    TEMPERATURE,
-)
+from . import network as net
+from .kernel import COLD_SHARE, LONGEST_STEP_S, LUMPS, PLATES, WEIGHT, advance, begin, compiled, factor, room, weighed
 
-greatest_cooling = compiled(network.greatest_cooling_A)
-current_for_heat = compiled(network.current_for_heat_A)
+greatest_cooling = compiled(net.greatest_cooling_A)
+current_for_heat = compiled(net.current_for_heat_A)
 
 CLOSE_A, ANY_A = 1e-10, 1e9
 """Tolerance of the search for a current, and what it gives where no current is enough: `limited` cuts that."""
@@ -55,19 +29,21 @@ LAG_S, KP, KI, KD, DELAY_S = range(5)
 @compiled
 def limited(amperes, hot, cold, sink, p):
     """The current that driver and module allow, and the code of the last limit that reduced it."""
-    alpha, ohm, leak, code = p[ALPHA], p[RESISTANCE], p[CONDUCTANCE], FREE
-    if amperes > p[HIGHEST_A]:
-        amperes, code = p[HIGHEST_A], MOST_CURRENT
-    if amperes < p[LOWEST_A]:
-        amperes, code = p[LOWEST_A], LEAST_CURRENT
+    alpha, ohm, leak, code = p[net.ALPHA], p[net.RESISTANCE], p[net.CONDUCTANCE], FREE
+    if amperes > p[net.HIGHEST_A]:
+        amperes, code = p[net.HIGHEST_A], MOST_CURRENT
+    if amperes < p[net.LOWEST_A]:
+        amperes, code = p[net.LOWEST_A], LEAST_CURRENT
     seebeck = alpha * (hot - cold)  # voltage at the module: α(T_h − T_c) + I·R
-    if amperes > (p[COMPLIANCE_V] - seebeck) / ohm:
-        amperes, code = (p[COMPLIANCE_V] - seebeck) / ohm, VOLTAGE
-    if amperes < (-p[COMPLIANCE_V] - seebeck) / ohm:
-        amperes, code = (-p[COMPLIANCE_V] - seebeck) / ohm, VOLTAGE
-    capped = p[PAST_MOST_COOLING] == 0.0
+    if amperes > (p[net.COMPLIANCE_V] - seebeck) / ohm:
+        amperes, code = (p[net.COMPLIANCE_V] - seebeck) / ohm, VOLTAGE
+    if amperes < (-p[net.COMPLIANCE_V] - seebeck) / ohm:
+        amperes, code = (-p[net.COMPLIANCE_V] - seebeck) / ohm, VOLTAGE
+    capped = p[net.PAST_MOST_COOLING] == 0.0
     if capped and amperes > 0.5 * alpha * (cold + ZERO_C_IN_K) / ohm:  # the best cooling is never below half of αT_c/R
-        most = greatest_cooling(cold, p[SINK_W_PER_K] * sink + leak * cold, p[SINK_W_PER_K] + leak, alpha, ohm, leak)
+        most = greatest_cooling(
+            cold, p[net.SINK_W_PER_K] * sink + leak * cold, p[net.SINK_W_PER_K] + leak, alpha, ohm, leak
+        )
         if amperes > most:
             amperes, code = most, MODULE
     return amperes, code
@@ -83,10 +59,10 @@ def wanted(target, share, z0, elim0, g0, period, hot, cold, sink, guess, p):
 
         αI·T_aim − I²R/2 − (T_h − T_aim)/Θ = g_0·(z0 + (elim0 − 1)·T_aim) − C_c·(T_aim − T_c)/period.
     """
-    alpha, ohm, leak = p[ALPHA], p[RESISTANCE], p[CONDUCTANCE]
+    alpha, ohm, leak = p[net.ALPHA], p[net.RESISTANCE], p[net.CONDUCTANCE]
     aim = (target - (1.0 - share) * z0) / (share + (1.0 - share) * elim0)
-    heat = g0 * (z0 + (elim0 - 1.0) * aim) - p[COLD_J_PER_K] / period * (aim - cold)
-    out, hot_store = p[SINK_W_PER_K], p[HOT_J_PER_K] / period
+    heat = g0 * (z0 + (elim0 - 1.0) * aim) - p[net.COLD_J_PER_K] / period * (aim - cold)
+    out, hot_store = p[net.SINK_W_PER_K], p[net.HOT_J_PER_K] / period
     base, total = hot_store * hot + out * sink + leak * aim, hot_store + out + leak
     amperes = current_for_heat(heat, aim, base, total, alpha, ohm, leak, ANY_A, guess, CLOSE_A)
     return limited(amperes, hot, cold, sink, p)
@@ -120,10 +96,10 @@ def follow(
         for k in range(target.shape[1]):
             weighed(wide, h, period_rows[WEIGHT], x, z0)
             for lane in range(lanes):
-                share, elim, deep = face_share[rig_of[block[lane]]], period_whole[COLD_SHARE, lane], p[DEEP_C, lane]
+                share, elim, deep = face_share[rig_of[block[lane]]], period_whole[COLD_SHARE, lane], p[net.DEEP_C, lane]
                 amperes, code = wanted(
                     target[cue_of[block[lane]], k], share, z0[lane] + deep * (1.0 - elim), elim, skin[1, 0, lane],
-                    period, x[PLATES, lane] + deep, x[PLATES, lanes + lane] + deep, sink[TEMPERATURE, lane],
+                    period, x[PLATES, lane] + deep, x[PLATES, lanes + lane] + deep, sink[net.TEMPERATURE, lane],
                     current[lane], p[:, lane],
                 )  # fmt: skip
                 current[lane], squared[lane] = amperes, amperes * amperes
@@ -133,7 +109,7 @@ def follow(
             for lane in range(lanes):
                 share = face_share[rig_of[block[lane]]]
                 face = share * x[PLATES, lanes + lane] + (1.0 - share) * x[LUMPS, lane]
-                reached[block[lane], k] = face + p[DEEP_C, lane]
+                reached[block[lane], k] = face + p[net.DEEP_C, lane]
 
 
 @compiled
@@ -167,13 +143,13 @@ def regulate(
             lag = gains[rig_of[block[lane]], LAG_S]
             decay[lane] = math.exp(-step / lag) if lag > 0.0 else 0.0
             mean[lane] = (1.0 - decay[lane]) * lag / step  # mean weight over a step in which the display is linear
-            felt[lane] = before[lane] = x[PLATES, lanes + lane] + p[DEEP_C, lane]
+            felt[lane] = before[lane] = x[PLATES, lanes + lane] + p[net.DEEP_C, lane]
             for k in range(len(past)):
                 past[k, lane] = felt[lane]
             integral[lane] = 0.0
         for k in range(setpoint.shape[1]):
             for lane in range(lanes):
-                r, deep = rig_of[block[lane]], p[DEEP_C, lane]
+                r, deep = rig_of[block[lane]], p[net.DEEP_C, lane]
                 past[k % len(past), lane] = felt[lane]
                 seen = past[(k - delay[r]) % len(past), lane]
                 error[lane] = seen - setpoint[cue_of[block[lane]], k]
@@ -181,20 +157,20 @@ def regulate(
                 demanded[lane] = bias[block[lane]] + gains[r, KP] * error[lane] + gains[r, KI] * integral[lane]
                 demanded[lane] += gains[r, KD] * rate
                 amperes, why[block[lane], k] = limited(
-                    demanded[lane], x[PLATES, lane] + deep, x[PLATES, lanes + lane] + deep, sink[TEMPERATURE, lane],
+                    demanded[lane], x[PLATES, lane] + deep, x[PLATES, lanes + lane] + deep, sink[net.TEMPERATURE, lane],
                     p[:, lane],
                 )  # fmt: skip
                 current[lane], squared[lane], before[lane] = amperes, amperes * amperes, seen
                 current_out[block[lane], k] = amperes
             for _ in range(pieces):
                 for lane in range(lanes):
-                    display[lane] = x[PLATES, lanes + lane] + p[DEEP_C, lane]
+                    display[lane] = x[PLATES, lanes + lane] + p[net.DEEP_C, lane]
                 advance(wide, h, step, current, squared, p, skin[1, 0], x, y, total, first, sink, rows, whole)
                 for lane in range(lanes):
-                    now = x[PLATES, lanes + lane] + p[DEEP_C, lane]
+                    now = x[PLATES, lanes + lane] + p[net.DEEP_C, lane]
                     felt[lane] = decay[lane] * felt[lane] + (mean[lane] - decay[lane]) * display[lane]
                     felt[lane] += (1.0 - mean[lane]) * now
             for lane in range(lanes):
                 if why[block[lane], k] == FREE or (demanded[lane] - current[lane]) * error[lane] < 0.0:
                     integral[lane] += error[lane] * period
-                reached[block[lane], k] = x[PLATES, lanes + lane] + p[DEEP_C, lane]
+                reached[block[lane], k] = x[PLATES, lanes + lane] + p[net.DEEP_C, lane]

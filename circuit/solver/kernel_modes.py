@@ -16,19 +16,9 @@ import math
 import numpy as np
 
 from ..rig.module import ZERO_C_IN_K
+from . import network as net
 from .kernel import compiled
 from .kernel_follow import FREE, limited
-from .network import (
-    ALPHA,
-    COLD,
-    COLD_J_PER_K,
-    CONDUCTANCE,
-    HOT_J_PER_K,
-    RESISTANCE,
-    SINK_C,
-    SINK_W_PER_K,
-    SKIN,
-)
 
 MARGIN_A, MARGIN = 0.01, 0.02
 """A display counts as playable where this much more current either way, in A and as a share, is free of limits too."""
@@ -95,16 +85,16 @@ def ramp_responses(count, cap, g, perf, period_s, places, weights, response):
                 response[r, q, k] = (
                     weights[r, q, 0] * x[at] + weights[r, q, 1] * x[at + 1] + weights[r, q, 2] * x[at + 2]
                 )
-            response[r, readings, k] = g[r, 0] * (x[SKIN] - k)
+            response[r, readings, k] = g[r, 0] * (x[net.SKIN] - k)
             below = 0.0
             for i in range(n - 1, -1, -1):
-                below = keep[i] * x[SKIN + i] + link[i] * below
+                below = keep[i] * x[net.SKIN + i] + link[i] * below
                 y[i] = below
             above = k + 0.5
             for i in range(n):
                 above = y[i] + elim[i] * above
-                x[SKIN + i] = 2.0 * above - x[SKIN + i]
-            x[COLD] = k + 1.0
+                x[net.SKIN + i] = 2.0 * above - x[net.SKIN + i]
+            x[net.COLD] = k + 1.0
 
 
 @compiled
@@ -148,8 +138,8 @@ def playable(lanes, rig_of, cue_of, display, flow, hot_C, plates, period_s, fine
     """
     for lane in lanes:
         p, c = plates[rig_of[lane]], cue_of[lane]
-        alpha, ohm, leak, out = p[ALPHA], p[RESISTANCE], p[CONDUCTANCE], p[SINK_W_PER_K]
-        hot_store, cold_store = p[HOT_J_PER_K] / period_s, p[COLD_J_PER_K] / period_s
+        alpha, ohm, leak, out = p[net.ALPHA], p[net.RESISTANCE], p[net.CONDUCTANCE], p[net.SINK_W_PER_K]
+        hot_store, cold_store = p[net.HOT_J_PER_K] / period_s, p[net.COLD_J_PER_K] / period_s
         hot = hot_C[lane]
         fine[lane] = True
         for k in range(1, display.shape[1]):
@@ -162,10 +152,10 @@ def playable(lanes, rig_of, cue_of, display, flow, hot_C, plates, period_s, fine
                 break
             amperes = (half - math.sqrt(root)) / ohm
             spare = MARGIN_A + MARGIN * abs(amperes)
-            _, above = limited(amperes + spare, hot, cold, p[SINK_C], p)
-            _, below = limited(amperes - spare, hot, cold, p[SINK_C], p)
+            _, above = limited(amperes + spare, hot, cold, p[net.SINK_C], p)
+            _, below = limited(amperes - spare, hot, cold, p[net.SINK_C], p)
             if above != FREE or below != FREE:
                 fine[lane] = False
                 break
-            warm = hot_store * hot + out * p[SINK_C] + leak * cold + alpha * amperes * ZERO_C_IN_K
+            warm = hot_store * hot + out * p[net.SINK_C] + leak * cold + alpha * amperes * ZERO_C_IN_K
             hot = (warm + 0.5 * ohm * amperes * amperes) / (hot_store + out + leak - alpha * amperes)

@@ -20,21 +20,8 @@ from ..arrays import Array, Index
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..rig.skin import column_of
-from .network import (
-    COLD,
-    HOT,
-    RECORDED,
-    SINK_AIR_W_PER_K,
-    SINK_C,
-    SINK_J_PER_K,
-    SINK_W_PER_K,
-    SKIN,
-    Network,
-    skin_network_of,
-    smooth_flow_weights,
-    stacked,
-    temperature_weights,
-)
+from . import network as net
+from .network import COLD, HOT, RECORDED, SKIN, Network
 
 READ = RECORDED[:5]
 """What can be read: the temperatures of RECORDED."""
@@ -144,12 +131,12 @@ def _with_sinks(
     capacity = np.concatenate([capacity, np.zeros((rigs, 1))], axis=1)
     source = np.concatenate([source, np.zeros((rigs, 1))], axis=1)
     for rig, network in enumerate(networks):
-        to_sink, air = float(network.plates[SINK_W_PER_K]), float(network.plates[SINK_AIR_W_PER_K])
-        capacity[rig, -1] = network.plates[SINK_J_PER_K]
-        source[rig, HOT] -= to_sink * network.plates[SINK_C]  # of an ideal one
+        to_sink, air = float(network.plates[net.SINK_W_PER_K]), float(network.plates[net.SINK_AIR_W_PER_K])
+        capacity[rig, -1] = network.plates[net.SINK_J_PER_K]
+        source[rig, HOT] -= to_sink * network.plates[net.SINK_C]  # of an ideal one
         grown[rig, HOT, -1] = grown[rig, -1, HOT] = -to_sink  # its share at the hot plate is there already
         grown[rig, -1, -1] = to_sink + air
-        source[rig, -1] = air * network.plates[SINK_C]
+        source[rig, -1] = air * network.plates[net.SINK_C]
     return capacity, grown, source
 
 
@@ -270,7 +257,7 @@ class SkinModes:
 @lru_cache(maxsize=256)
 def modes_of(rig: Rig, insulated: bool = False) -> SkinModes:
     """The modes of a rig's skin in contact; `insulated`: under a display that conducts no heat."""
-    return modes_on(skin_network_of(rig), insulated)
+    return modes_on(net.skin_network_of(rig), insulated)
 
 
 @lru_cache(maxsize=64)
@@ -290,7 +277,9 @@ def thermode_modes(
     resistance[0] += contact_m2K_per_W
     place = np.concatenate([[0.0], np.cumsum(resistance)])
     at = [contact_m2K_per_W + skin.resistance_to_m2K_per_W(depth) for depth in depths_m]
-    readings = stacked([read(each, place) for read in (temperature_weights, smooth_flow_weights) for each in at])
+    readings = net.stacked(
+        [read(each, place) for read in (net.temperature_weights, net.smooth_flow_weights) for each in at]
+    )
     g = 1.0 / resistance
     return _modes(rig.deep_C, column.capacity_J_per_m2K, g, column.perfusion_W_per_m2K, float(g[0]), readings)
 

@@ -216,26 +216,19 @@ def unpowered(network: Network, sink_C: float) -> Network:
 
 
 def _network(rig: Rig, column: SkinColumn, plates: Array) -> Network:
-    area = rig.contact.area_m2
+    area, contact = rig.contact.area_m2, rig.contact.resistance_m2K_per_W
     resistance = column.resistance_m2K_per_W.copy()
-    resistance[0] += rig.contact.resistance_m2K_per_W
-    starts, weights = _probes(rig, resistance)
-    return Network(
-        column.capacity_J_per_m2K * area, area / resistance, column.perfusion_W_per_m2K * area, starts, weights, plates
-    )
-
-
-def _probes(rig: Rig, resistance: Array) -> tuple[Index, Array]:
-    """Weights of each recorded quantity on three neighbouring states; resistances from the cold plate down, m²·K/W."""
+    resistance[0] += contact
     place = np.concatenate([[0.0], np.cumsum(resistance)])  # of cold plate, lumps, deep node
-    contact = rig.contact.resistance_m2K_per_W
     rows = [(HOT, (1.0, 0.0, 0.0)), (COLD, (1.0, 0.0, 0.0)), temperature_weights(contact, place)]
     receptors = (rig.skin.cold_receptor_m, rig.skin.warm_receptor_m)
     depths = [contact + rig.skin.resistance_to_m2K_per_W(depth) for depth in receptors]
     rows += [temperature_weights(depth, place) for depth in depths]
-    rows += [flow_weights(0.5 * place[1], place)]
-    rows += [flow_weights(depth, place) for depth in depths]
-    return stacked(rows)
+    rows += [flow_weights(depth, place) for depth in (0.5 * place[1], *depths)]
+    starts, weights = stacked(rows)
+    return Network(
+        column.capacity_J_per_m2K * area, area / resistance, column.perfusion_W_per_m2K * area, starts, weights, plates
+    )
 
 
 def places_of(rig: Rig) -> Array:

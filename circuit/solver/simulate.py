@@ -19,7 +19,7 @@ from .inverse import baseline_C, design, design_many, target_at
 from .network import RECORDED, network_of
 from .probes import between, divided, readings_of, sensed
 from .steady import check_sink, state_under_current, steady_state
-from .trace import Outcome, Trace
+from .trace import Outcome, Trace, of_rig
 
 MOST_ROWS = 10_000_000
 """Rows of a trace at most: a gigabyte of its thirteen columns."""
@@ -201,24 +201,18 @@ def _trace(
     values = dict(zip(RECORDED, (np.ascontiguousarray(probe) for probe in probes), strict=True))
     seebeck_V = rig.module.seebeck_V_per_K * (values["hot_plate_C"] - values["display_C"])
     voltage = seebeck_V + current * rig.module.resistance_ohm
-    limits = (rig.driver.current_min_A, rig.driver.current_max_A)
     return Trace(
         icon=icon,
-        rig_name=rig.name,
-        site=rig.site,
-        area_m2=rig.contact.area_m2,
-        driver_limits_A=limits,
+        driver_limits_A=(rig.driver.current_min_A, rig.driver.current_max_A),
         control=control,
         outcome=outcome,
-        warnings=rig.warnings,
         beyond=_beyond(rig, rows, current, voltage) if outcome is None else (),
         time_s=rows,
         current_A=current,
         voltage_V=voltage,
         target_C=target,
         probes=own_probes,
-        limits=rig.limits,
-        rig=rig,
+        **of_rig(rig),
         **values,
     )
 

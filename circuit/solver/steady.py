@@ -9,26 +9,8 @@ from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from .network import (
-    ALPHA,
-    COLD,
-    CONDUCTANCE,
-    HOT,
-    RESISTANCE,
-    SINK_AIR_W_PER_K,
-    SINK_C,
-    SINK_START_C,
-    SINK_W_PER_K,
-    SKIN,
-    Network,
-    current_for_heat_A,
-    greatest_cooling_A,
-    hot_plate_C,
-    network_of,
-)
-
-PLATE_BALANCE = (ALPHA, RESISTANCE, CONDUCTANCE, SINK_C, SINK_W_PER_K)
-"""Places of the plate numbers that decide a steady state."""
+from . import network as net
+from .network import Network, current_for_heat_A, greatest_cooling_A, hot_plate_C, network_of
 
 
 def _plates(network: Network, in_the_end: bool = False) -> tuple[float, float, float, float, float]:
@@ -37,9 +19,10 @@ def _plates(network: Network, in_the_end: bool = False) -> tuple[float, float, f
     A passive heat sink stays where it starts; `in_the_end`, or where that is not given, it is itself in balance with
     its air, so that the hot plate rests on the air through two resistances in series.
     """
-    alpha, ohm, leak, sink, out = (float(network.plates[k]) for k in PLATE_BALANCE)
+    places = net.ALPHA, net.RESISTANCE, net.CONDUCTANCE, net.SINK_C, net.SINK_W_PER_K
+    alpha, ohm, leak, sink, out = (float(network.plates[k]) for k in places)
     if network.passive:
-        start, air = float(network.plates[SINK_START_C]), float(network.plates[SINK_AIR_W_PER_K])
+        start, air = float(network.plates[net.SINK_START_C]), float(network.plates[net.SINK_AIR_W_PER_K])
         sink, out = (sink, out * air / (out + air)) if in_the_end or np.isnan(start) else (start, out)
     return alpha, ohm, leak, sink, out
 
@@ -62,31 +45,23 @@ def _column(network: Network) -> tuple[Array, Array]:
 @lru_cache(maxsize=512)
 def state_under_current(network: Network, current_A: float, in_the_end: bool = False) -> Array:
     """Steady state (nodes,) in °C, read-only, under a current; ArithmeticError where it would heat without limit."""
-    plates, (z, e) = _plates(network, in_the_end), _column(network)
-    cold, hot = _balance(plates, current_A, float(network.conductance_W_per_K[0]), z[0], e[0])
-    state = np.empty(network.nodes)
-    state[HOT], state[COLD], state[-1] = hot, cold, network.deep_C
-    for i in range(len(z)):
-        state[SKIN + i] = z[i] + e[i] * state[COLD + i]
-    if network.passive:
-        *_, sink, out = plates
-        state[-2] = hot - out * (hot - sink) / float(network.plates[SINK_W_PER_K])
-    state.setflags(write=False)
-    return state
-
-
-def _balance(
-    plates: tuple[float, float, float, float, float], current_A: float, skin: float, z: float, e: float
-) -> tuple[float, float]:
-    """Cold and hot plate in °C over a conductance in W/K to something at z + e · (cold plate)."""
-    alpha, ohm, leak, sink, out = plates
+    alpha, ohm, leak, sink, out = _plates(network, in_the_end)
+    (z, e), skin = _column(network), float(network.conductance_W_per_K[0])
     zero = hot_plate_C(current_A, out * sink, out + leak, alpha, ohm)
     per_cold = leak / (out + leak - alpha * current_A)
-    diagonal = leak * (1.0 - per_cold) + alpha * current_A + skin * (1.0 - e)
+    diagonal = leak * (1.0 - per_cold) + alpha * current_A + skin * (1.0 - e[0])
     if out + leak - alpha * current_A <= 0 or diagonal <= 0:
         raise ArithmeticError(f"{current_A:g} A has no steady state on this rig: it heats without limit")
-    cold = (leak * zero - alpha * current_A * ZERO_C_IN_K + 0.5 * ohm * current_A**2 + skin * z) / diagonal
-    return cold, zero + per_cold * cold
+    cold = (leak * zero - alpha * current_A * ZERO_C_IN_K + 0.5 * ohm * current_A**2 + skin * z[0]) / diagonal
+    hot = zero + per_cold * cold
+    state = np.empty(network.nodes)
+    state[net.HOT], state[net.COLD], state[-1] = hot, cold, network.deep_C
+    for i in range(len(z)):
+        state[net.SKIN + i] = z[i] + e[i] * state[net.COLD + i]
+    if network.passive:
+        state[-2] = hot - out * (hot - sink) / float(network.plates[net.SINK_W_PER_K])
+    state.setflags(write=False)
+    return state
 
 
 def holding_current_A(network: Network, control: str, level_C: float) -> float:
@@ -109,7 +84,7 @@ def check_sink(rig: Rig, state_C: Array) -> None:
     sink, controller = rig.heat_sink, rig.heat_sink.controller
     if controller is None:
         return
-    power = (float(state_C[HOT]) - sink.temperature_C) / sink.resistance_K_per_W
+    power = (float(state_C[net.HOT]) - sink.temperature_C) / sink.resistance_K_per_W
     if abs(power) > controller.power_limit_W:
         raise RigError(
             f"rig {rig.name}: at rest the hot plate has {abs(power):.2f} W to {'remove' if power > 0 else 'add'}, its "
@@ -127,14 +102,13 @@ def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
     0.08
     """
     network = network_of(rig)
-    probe = "skin_C" if control == "skin" else "display_C"
     what = f"rig {rig.name}: a baseline of {level_C:g} °C on the {control} cannot be held"
     current = holding_current_A(network, control, level_C)
     try:
         state = state_under_current(network, current)
     except ArithmeticError as problem:
         raise RigError(f"{what}: {problem}") from None
-    reached = network.read(state, probe)
+    reached = network.read(state, "skin_C" if control == "skin" else "display_C")
     driver = rig.driver
     if not abs(reached - level_C) <= 1e-6:
         raise RigError(f"{what}: the module cools it to {reached:.1f} °C at most; use a warmer baseline")
@@ -143,7 +117,7 @@ def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
             f"{what}: it needs {current:.3f} A, the driver gives {driver.current_min_A:g} … "
             f"{driver.current_max_A:g} A; choose a baseline nearer to rest or a wider current limit"
         )
-    voltage = rig.module.voltage_V(current, float(state[COLD]), float(state[HOT]))
+    voltage = rig.module.voltage_V(current, float(state[net.COLD]), float(state[net.HOT]))
     if abs(voltage) > driver.voltage_limit_V:
         raise RigError(
             f"{what}: it needs {voltage:.2f} V, the driver gives at most {driver.voltage_limit_V:g} V; "
@@ -159,5 +133,5 @@ def steady_of(rig: Rig, duty: float, peak_A: float) -> Array:
     if duty == 0:
         return state_under_current(network, 0.0)
     plates = network.plates.copy()
-    plates[RESISTANCE] /= abs(duty)
+    plates[net.RESISTANCE] /= abs(duty)
     return state_under_current(replace(network, plates=plates), duty * peak_A)

@@ -233,6 +233,12 @@ class Trace:
         return plot_temperatures(self, ax, probes)
 
 
+def of_rig(rig: Rig) -> dict[str, Any]:
+    """What a trace has of its rig, by its attributes."""
+    about = {"rig_name": rig.name, "site": rig.site, "area_m2": rig.contact.area_m2}
+    return {**about, "warnings": rig.warnings, "limits": rig.limits, "rig": rig}
+
+
 def write_trace(traces: Trace | list[Trace], path: str | Path) -> None:
     """Write traces to one table: Parquet where the name ends in ``.parquet``, else CSV; NaN is an empty cell."""
     import pandas as pd

@@ -7,13 +7,14 @@ predictions at the constants there are); ``sample`` writes draws of the posterio
 import argparse
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 from thermicon.circuit.cores import cores
 from thermicon.circuit.records import RecordError
 from thermicon.icons.atomic import complete_or_absent
 
-from ..observer.channels import VARIABLES, Variable
+from ..observer.channels import VARIABLES
 from ..observer.draws_file import shipped_file, to_text
 from ..observer.priors import WITHIN_95
 from .calibrate import write_observer
@@ -68,11 +69,10 @@ def write_fit() -> None:
 
     Draws of the variant that is not sampled are those of the normal approximation, and marked as such.
     """
-
-    def fitted(variable: Variable) -> Maximum:
-        return maximise(Posterior(variable), progress=lambda done: tell(done, 0, f"rounds, {variable}"))
-
-    maxima = [fitted(variable) for variable in VARIABLES]
+    maxima = [
+        maximise(Posterior(variable), progress=partial(tell, total=0, words=f"rounds, {variable}"))
+        for variable in VARIABLES
+    ]
     write_rows([row for found in maxima for row in constants_of(found)], CONSTANTS)
     write_rows(predictions_of(maxima, leave_each_out(maxima[0], tell)), PREDICTIONS)
     for found in maxima[1:]:
@@ -106,14 +106,8 @@ def predictions_of(maxima: Sequence[Maximum], left_out: Sequence[LeftOut]) -> li
 
 def sample_posterior(asked: argparse.Namespace) -> int:
     """Sample the posterior and write its draws."""
-    sampled = sample(
-        Posterior(),
-        asked.seed,
-        workers=asked.workers,
-        least_steps=min(LEAST_STEPS, asked.steps),
-        most_steps=asked.steps,
-        progress=tell,
-    )
+    steps = {"least_steps": min(LEAST_STEPS, asked.steps), "most_steps": asked.steps}
+    sampled = sample(Posterior(), asked.seed, workers=asked.workers, progress=tell, **steps)
     sys.stderr.write("\n")
     sys.stdout.write(f"{sampled.diagnostics}\n")
     if not sampled.diagnostics.converged:

@@ -37,23 +37,19 @@ def calibrate(thresholds: RecordTable | None = None) -> RecordTable:
         *(_neutral_flux(known, channel) for channel in CHANNELS),
         *(record for variant in VARIABLES for record in _inferred(variant)),
     )
-    noise = [_memory(known, shared, variant) for variant in VARIABLES]
+    noise = []
+    for variant in VARIABLES:  # by the rate task through its own distance
+        unset = memory_record(source_of(variant), 1.0, 1.0, 1.0)
+        draft = Observer.from_table(RecordTable("draft", (*shared, unset)), variable=variant)
+        noise.append(memory_noise(known, draft))
     return RecordTable("observer.toml", tuple(_rounded(r) for r in (*shared, *noise)))
-
-
-def to_toml(observer: RecordTable) -> str:
-    """Text of the parameter file, the same bytes for the same records."""
-    return dump_records(observer, comment=COMMENT)
 
 
 def _inferred(variable: Variable) -> list[Record]:
     """Constants of one variant, but for offsets of single laboratories."""
     draws, variant = PosteriorDraws.load(variable=variable), source_of(variable)
-    constants = [each for each in load_constants(variable) if each.mechanism != OFFSETS]
+    constants = [each for each in load_constants(variable) if each.mechanism != "laboratories"]
     return [_record(each, draws.interval(each.name), variant) for each in constants]
-
-
-OFFSETS = "laboratories"
 
 
 def _record(each: Constant, interval: tuple[float, float, float], variant: str) -> Record:
@@ -72,13 +68,6 @@ def _record(each: Constant, interval: tuple[float, float, float], variant: str) 
         confidence="low" if each.narrowed > UNMOVED_SD else "medium",
         use="assumed" if each.narrowed > UNMOVED_SD else "calibrate",
     )
-
-
-def _memory(known: RecordTable, shared: tuple[Record, ...], variable: Variable) -> Record:
-    """Memory noise of a variant, by the rate task through its own distance."""
-    unset = memory_record(source_of(variable), 1.0, 1.0, 1.0)
-    draft = Observer.from_table(RecordTable("draft", (*shared, unset)), variable=variable)
-    return memory_noise(known, draft)
 
 
 def _taken_over(known: RecordTable) -> tuple[Record, ...]:
@@ -147,4 +136,4 @@ def _neutral_flux(known: RecordTable, channel: Channel) -> Record:
 
 def write_observer() -> None:
     """Write the parameter file of the package."""
-    (DATA / "observer.toml").write_text(to_toml(calibrate()), encoding="utf-8")
+    (DATA / "observer.toml").write_text(dump_records(calibrate(), comment=COMMENT), encoding="utf-8")

@@ -52,13 +52,11 @@ class Reference:
 
     def vector(self, white: Array) -> Array:
         """Vectors (..., n) of the posterior from coordinates in which the approximation is standard normal."""
-        vectors: Array = self.middle + white @ self.factor.T
-        return vectors
+        return self.middle + white @ self.factor.T
 
     def white(self, vectors: Array) -> Array:
         """The other way round."""
-        white: Array = np.linalg.solve(self.factor, (vectors - self.middle).T).T.astype(np.float64)
-        return white
+        return np.linalg.solve(self.factor, (vectors - self.middle).T).T.astype(np.float64)
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +122,6 @@ def extend(
 R_HAT, ESS = 1.01, 400.0
 """Chains have converged where every constant has an R-hat below and a bulk effective sample size above (Vehtari et
 al. 2021)."""
-EXTRA = 'sampling needs emcee and arviz-stats, which are not installed: pip install "thermicon[calibrate]"'
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,7 +155,8 @@ def require_extra() -> None:
         import arviz_stats  # noqa: F401
         import emcee  # noqa: F401
     except ImportError:
-        raise RecordError(EXTRA) from None
+        missing = "sampling needs emcee and arviz-stats, which are not installed"
+        raise RecordError(f'{missing}: pip install "thermicon[calibrate]"') from None
 
 
 def diagnose(names: tuple[str, ...], chains: Array) -> Diagnostics:
@@ -248,15 +246,8 @@ def fitted(
     posterior: Posterior, reference: Reference, points: Points, reach: tuple[float, float] = NARROW
 ) -> Surrogate:
     """The surrogate of the rows that count."""
-    counted = posterior.counted
-    return fit_surrogate(
-        reference.white(points.vectors),
-        points.misses[:, counted],
-        reference.middle,
-        reference.factor,
-        LimitFeatures.of(posterior.priors),
-        reach,
-    )
+    white, misses = reference.white(points.vectors), points.misses[:, posterior.counted]
+    return fit_surrogate(white, misses, reference.middle, reference.factor, LimitFeatures.of(posterior.priors), reach)
 
 
 def walked(surrogate: Surrogate, random: np.random.RandomState, points: int) -> Array:

@@ -103,10 +103,9 @@ def limits(
         Query("limits threshold", one.channel, "K", how, partial(measured, setting, one), noticed_K(one.channel))
         for one in conditions
     ]
-    medians = []
-    for each, one in zip(predict(f"limits on the {site}", queries, variable, draws, seed), conditions, strict=True):
-        medians.append(replace(each, value=float(np.median(np.exp(logs_of(crowd, setting, one)[0])))))
-    return tuple(medians)
+    found = predict(f"limits on the {site}", queries, variable, draws, seed)
+    middle = [float(np.median(np.exp(logs_of(crowd, setting, one)[0]))) for one in conditions]
+    return tuple(replace(each, value=value) for each, value in zip(found, middle, strict=True))
 
 
 def reaction_times(variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0) -> tuple[Predicted, ...]:

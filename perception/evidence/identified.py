@@ -102,18 +102,15 @@ class ShownSet:
 
         def confusions(at: ReceptorTemperatures, observer: Observer, people: People, samples: int) -> Array:
             felt = respond(at, people, observer, detection=False)
-            probability: Array = identify(felt, USUAL_MEMORY, people, observer, self.seed, samples)[1].probability
-            return probability
+            return identify(felt, USUAL_MEMORY, people, observer, self.seed, samples)[1].probability
 
         whole = confusions(self.played(variable), nominal, self.crowd, SAMPLES)
         invited = others.invited(len(few))
 
         def drawn(k: int) -> Array:
-            found: Array = confusions(thin, *others.at(k, len(few)), FEW_SAMPLES)[invited[k]]
-            return found
+            return confusions(thin, *others.at(k, len(few)), FEW_SAMPLES)[invited[k]]
 
-        each = list(in_order(drawn, range(draws)))
-        kept = np.stack(each) if each else np.zeros((0, *whole.shape))
+        kept = np.array(list(in_order(drawn, range(draws))))
         alone = confusions(thin, nominal, few, FEW_SAMPLES)
         return VariantConfusions(variable, labels, whole, alone, kept, self.baseline)
 

@@ -84,8 +84,7 @@ class Posterior:
         """Misses of all rows, left out or not, in their SDs."""
         predictions = self.predictions(vector)
         missed = np.array([(predictions[row.key] - row.value) / row.sd for row in load_rows()])
-        clipped: Array = np.clip(np.nan_to_num(missed, nan=FARTHEST), -FARTHEST, FARTHEST)
-        return clipped
+        return np.clip(np.nan_to_num(missed, nan=FARTHEST), -FARTHEST, FARTHEST)
 
 
 STEP = 0.04
@@ -113,8 +112,7 @@ class Maximum:
     @property
     def sd(self) -> Array:
         """SD (n,) of each constant, in SDs of its prior: 1 where the rows say nothing."""
-        spread: Array = np.sqrt(np.diag(self.covariance))
-        return spread
+        return np.sqrt(np.diag(self.covariance))
 
     def interval(self, name: str, half_width: float = WITHIN_95) -> tuple[float, float]:
         """Interval of one constant in its own unit; 95 % unless another number of SDs is given."""
@@ -136,9 +134,8 @@ def maximise(
     def jacobian(vector: Array) -> Array:
         nonlocal rounds
         rounds += 1
-        columns = []
-        for step in STEP * np.eye(vector.size):
-            columns.append((posterior.residuals(vector + step) - posterior.residuals(vector - step)) / (2.0 * STEP))
+        steps, at = STEP * np.eye(vector.size), posterior.residuals
+        columns = [(at(vector + step) - at(vector - step)) / (2.0 * STEP) for step in steps]
         if progress is not None:
             progress(rounds)
         return np.stack(columns, axis=1)

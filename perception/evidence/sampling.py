@@ -50,8 +50,7 @@ class SampledPosterior:
     def vectors(self) -> Array:
         """DRAWS vectors (DRAWS, n), evenly spaced along all chains."""
         steps = self.chains.reshape(-1, self.chains.shape[2])
-        chosen: Array = steps[np.linspace(0, len(steps) - 1, DRAWS).round().astype(np.int64)]
-        return chosen
+        return steps[np.linspace(0, len(steps) - 1, DRAWS).round().astype(np.int64)]
 
     def draws(self) -> PosteriorDraws:
         """The draws in each constant's own unit, with a header that says where they come from."""
@@ -108,8 +107,7 @@ def _kept(chains: Sequence[Chain], reference: Reference) -> Array:
 def shipped_vector(posterior: Posterior) -> Array:
     """The shipped maximum of the posterior's variant, as a place to begin."""
     known = {each.name: each.value for each in load_constants(posterior.variable)}
-    vector: Array = (posterior.priors.places(known) - posterior.priors.middle) / posterior.priors.sd
-    return vector
+    return (posterior.priors.places(known) - posterior.priors.middle) / posterior.priors.sd
 
 
 def at_shipped(posterior: Posterior) -> Maximum:
@@ -164,5 +162,4 @@ def in_the_middle(posterior: Posterior, vectors: Array) -> int:
 def _off_centre(each: Array) -> Array:
     """Mean square (draws,) of how many SDs a draw lies from the median of each column."""
     spread = np.where(each.std(axis=0) > 0.0, each.std(axis=0), 1.0)
-    found: Array = np.square((each - np.median(each, axis=0)) / spread).mean(axis=1)
-    return found
+    return np.square((each - np.median(each, axis=0)) / spread).mean(axis=1)

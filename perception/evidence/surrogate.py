@@ -58,17 +58,12 @@ class Surrogate:
         slopes = self.slope + 2.0 * bent
         if self.features is not None:
             residuals = residuals + self.weights @ self.features.at(vector)
-            slopes = slopes + self._feature_slopes(vector)
+            bent_slopes = self.weights @ self.features.slopes(vector)
+            slopes = slopes + bent_slopes @ self.factor[list(self.features.places)]
         beyond = np.maximum(0.0, white @ white - max(self.wall * white.size, LEAST_WALL))
         gradient: Array = -slopes.T @ residuals - self.factor.T @ vector - 4.0 * WALL_RISE * beyond * white
         density = float(-0.5 * (residuals @ residuals + vector @ vector) - WALL_RISE * beyond**2)
         return density / self.heat, gradient / self.heat
-
-    def _feature_slopes(self, vector: Array) -> Array:
-        """Slopes (rows, n) of the features' part."""
-        assert self.features is not None
-        slopes: Array = self.weights @ self.features.slopes(vector) @ self.factor[list(self.features.places)]
-        return slopes
 
     @np.errstate(over="ignore", invalid="ignore", divide="ignore")
     def walk(self, white: Array, random: np.random.RandomState, trajectories: int) -> Array:
@@ -139,8 +134,7 @@ class LimitFeatures:
         """The features of a posterior; None where its limits are not inferred."""
         if any(name not in priors.names for name in NAMES):
             return None
-        cold, warm, softness = (priors.names.index(name) for name in NAMES)
-        chosen = [cold, warm, softness]
+        cold, warm, softness = chosen = [priors.names.index(name) for name in NAMES]
         return cls((cold, warm, softness), priors.middle[chosen], priors.sd[chosen])
 
     def at(self, vectors: Array) -> Array:
@@ -163,5 +157,4 @@ class LimitFeatures:
             self.middle[k] + self.sd[k] * vectors[..., place] for k, place in enumerate(self.places)
         )
         away = [cold - at for at in COLD_C] + [at - warm for at in WARM_C]
-        x: Array = np.stack(away, axis=-1) / np.exp(log_softness)[..., None]
-        return x
+        return np.stack(away, axis=-1) / np.exp(log_softness)[..., None]

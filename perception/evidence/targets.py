@@ -138,8 +138,7 @@ def published_for(row: TargetRow, table: RecordTable) -> Published:
         cold, warm = (_record(row, table, channel) for channel in ("cold", "warm"))
         if cold.channel != "both":
             value = combined(apply, cold.central, warm.central)
-            text = _said(row, plain(value), cold)
-            return Published(text, cold.source, _under(cold), "1", value, fitted=cold.use == "calibrate")
+            return _published(row, cold, plain(value), "1", value)
     record = _record(row, table, row.channel if row.channel in ("cold", "warm") else "")
     unit = "" if record.unit in ("1", "sign") else f" {record.unit}"
     low, high = record.low, record.high
@@ -148,9 +147,7 @@ def published_for(row: TargetRow, table: RecordTable) -> Published:
         number = MINUS if record.central < 0 else "+"
     span = f"{plain(low)} to {plain(high)}" if low is not None and high is not None else ""
     text = f"{number} [{span}]" if number and span else number or span
-    said = _said(row, f"{text}{unit}", record)
-    fitted = record.use == "calibrate"
-    return Published(said, record.source, _under(record), record.unit, record.value, low, high, fitted)
+    return _published(row, record, f"{text}{unit}", record.unit, record.value, low, high)
 
 
 def combined(apply: str, cold: float, warm: float) -> float:
@@ -176,14 +173,12 @@ def plain(value: float) -> str:
     return text.replace("-", MINUS)
 
 
-def _said(row: TargetRow, number: str, record: Record) -> str:
+def _published(row: TargetRow, record: Record, number: str, unit: str, *numbers: float | None) -> Published:
     """A published number in the words of its row, marked where the constants were inferred from it."""
-    mark = ", fitted" if record.use == "calibrate" else ""
-    return (row.says.replace("{}", number) if row.says else number) + mark
-
-
-def _under(record: Record) -> str:
-    return "; ".join(part for part in (record.site, record.method, record.conditions) if part)
+    said, fitted = row.says.replace("{}", number) if row.says else number, record.use == "calibrate"
+    under = "; ".join(part for part in (record.site, record.method, record.conditions) if part)
+    value, low, high = (*numbers, None, None)[:3]
+    return Published(f"{said}{', fitted' * fitted}", record.source, under, unit, value, low, high, fitted)
 
 
 def _record(row: TargetRow, table: RecordTable, channel: str) -> Record:

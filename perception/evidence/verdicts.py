@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from thermicon.icons.number_text import significant
+from thermicon.icons.number_text import significant, unit_text
 
 from .targets import MINUS, Published, TargetRow, plain
 
@@ -47,7 +47,7 @@ def judge_row(row: TargetRow, predicted: float | None, published: Published) -> 
     if miss == 0.0 and not edge:
         return Verdict(True, 0.0, asked)
     short = under > 0.0 or (edge and predicted == low)
-    size = f"{plain(miss)}{_unit(row)} {'too low' if short else 'too high'}"
+    size = f"{plain(miss)}{unit_text(row.unit)} {'too low' if short else 'too high'}"
     return Verdict(False, miss, f"{size}; {asked}")
 
 
@@ -73,7 +73,7 @@ def criterion_of_row(row: TargetRow, published: Published) -> str:
         value=value,
         percent=100.0 * value,
         bound=plain(value),
-        unit=_unit(row),
+        unit=unit_text(row.unit),
         middle=plain(middle),
         low=plain(low),
         high=plain(high),
@@ -92,10 +92,6 @@ def value_text(row: TargetRow, value: float, published: Published) -> str:
     bounds = [bound for bound in _bounds(row, published)[:2] if math.isfinite(bound)]
     text = significant(value, *bounds)[0].replace("-", MINUS)
     return text if "e" not in text and len(text) > len(plain(value)) else plain(value)
-
-
-def _unit(row: TargetRow) -> str:
-    return "" if row.unit == "1" else f" {row.unit}"
 
 
 def _by_ratio(row: TargetRow, predicted: float, published: Published, asked: str) -> Verdict:

@@ -80,10 +80,8 @@ class NewLaboratory:
     def rows(self, names: Sequence[str]) -> list[dict[str, Any]]:
         """The intervals of every icon, by the keys of `rank --json`."""
         named = [self.pair(k, k, "confused") for k in range(len(names))]
-        keys = ("name", *NEW_LABORATORY)
-        return [
-            dict(zip(keys, row, strict=True)) for row in zip(names, self.detected, self.onset_s, named, strict=True)
-        ]
+        keys, rows = ("name", *NEW_LABORATORY), zip(names, self.detected, self.onset_s, named, strict=True)
+        return [dict(zip(keys, row, strict=True)) for row in rows]
 
     def __repr__(self) -> str:
         (low, high), (least, most) = self.proportion_correct, self.information_bits
@@ -148,12 +146,12 @@ def new_laboratory(
         draws=draws,
         people=len(persons),
         posterior=status,
-        proportion_correct=_ends(moved["proportion_correct"]),
-        information_bits=_ends(moved["information_bits"]),
-        detected=tuple(_ends(each) for each in moved["detected"].T),
+        proportion_correct=interval_of(moved["proportion_correct"]),
+        information_bits=interval_of(moved["information_bits"]),
+        detected=tuple(map(interval_of, moved["detected"].T)),
         # Over the draws in which an icon is felt, where these are the most.
         onset_s=tuple(
-            _ends(each[np.isfinite(each)]) if 2 * np.isfinite(each).sum() > each.size else None
+            interval_of(each[np.isfinite(each)]) if 2 * np.isfinite(each).sum() > each.size else None
             for each in moved["onset_s"].T
         ),
         d_prime=apart,
@@ -167,6 +165,7 @@ def new_laboratory(
     )
 
 
-def _ends(values: Array) -> Interval:
+def interval_of(values: Array) -> Interval:
+    """The middle 95 % of values (n,)."""
     low, high = np.percentile(values, COVER)
     return float(low), float(high)

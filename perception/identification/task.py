@@ -5,7 +5,7 @@ People distinguish two rates that differ by a fixed fraction, whatever rate and 
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from statistics import NormalDist
@@ -38,7 +38,7 @@ def memory_noise(known: RecordTable, observer: Observer) -> Record:
     criteria = known.one("criterion of the rate task").interval
     cases = [Episodes.of(cold[None], warm[None], dt, observer) for cold, warm, dt in _felt(known, observer)]
     found = [[_noise_of(case, proportion, observer) for case in cases] for proportion in criteria]
-    ends = [_root_mean_square(values) for values in found]
+    ends = [math.sqrt(sum(v * v for v in values) / len(values)) for values in found]  # variances are averaged
     every = [v for values in found for v in values]
     spread = max(max(values) / min(values) for values in found)
     conditions = (
@@ -46,7 +46,8 @@ def memory_noise(known: RecordTable, observer: Observer) -> Record:
         f"{1 + fraction.central:g} times the rate; {criteria[0]:g} and {criteria[1]:g} correct are the ends; "
         f"largest over smallest condition {spread:.3f}, all {min(every):.3f} to {max(every):.3f}"
     )
-    made = memory_record(source_of(observer.variable), _root_mean_square(ends), min(ends), max(ends))
+    middle = math.sqrt(sum(v * v for v in ends) / len(ends))
+    made = memory_record(source_of(observer.variable), middle, min(ends), max(ends))
     return replace(made, source=f"calibrated on: {fraction.source}", conditions=conditions)
 
 
@@ -98,11 +99,6 @@ def _felt(known: RecordTable, observer: Observer) -> Iterator[tuple[Array, Array
 def _pair(span_K: float, slow: float, fast: float) -> Stimulus:
     end = round(span_K / slow + TAIL_S, 2)
     return Bench(Rig.load(RIG)).play([ramp("cold", span_K, rate) for rate in (slow, fast)], end)
-
-
-def _root_mean_square(values: Sequence[float]) -> float:
-    """Noise of several conditions as one: variances are averaged."""
-    return math.sqrt(sum(v * v for v in values) / len(values))
 
 
 LONGEST_GAP_S = 600.0

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from thermicon.circuit.records import Record
-from thermicon.circuit.rig.skin import layer_spreads
+from thermicon.circuit.records import Record, shipped_records
 from thermicon.icons.model.arguments import checked
 
 from ..arrays import Array, own_arrays
@@ -228,7 +227,7 @@ def people_records() -> Mapping[str, Record]:
         "criterion_warm": own("criterion_between"),
         "memory": table.one("spread of memory noise between people"),
         "contact_resistance": table.one("contact resistance spread"),
-        "outer_layer": layer_spreads().one("outermost layer thickness spread"),
+        "outer_layer": shipped_records("skin-spread.toml").one("outermost layer thickness spread"),
         "path": own("path_hand_m"),
         "decision_s": own("decision_between"),
         "lapse": own("lapse"),

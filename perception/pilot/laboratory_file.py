@@ -50,7 +50,10 @@ def laboratory_draws(
     first = middle_of(some, counted, predicted, played)
     order = [first, *(k for k in range(len(own)) if k != first)]
     distinct = len(np.unique(np.hstack([own, memory]), axis=0))
-    how = how_resampled(len(found.before), found.effective, found.rounds)
+    times = "1 round" if found.rounds == 1 else f"{found.rounds} rounds"
+    how = f"in {times} of fresh laboratories, since weights left {found.effective:.0f} effective of {len(found.before)}"
+    if not found.rounds:
+        how = f"by weights from {len(found.before)} laboratories, effective sample size {found.effective:.0f}"
     stated = replace(
         header,
         sampler="; ".join((header.sampler, *provenance[:DATA_LINES])),
@@ -59,14 +62,6 @@ def laboratory_draws(
         rig=rig,
     )
     return PosteriorDraws(stated, names, as_written(own[order]), remembered, as_written(memory[order]))
-
-
-def how_resampled(laboratories: int, effective: float, rounds: int) -> str:
-    """The way of resampling laboratories, in a few words."""
-    if not rounds:
-        return f"by weights from {laboratories} laboratories, effective sample size {effective:.0f}"
-    times = "1 round" if rounds == 1 else f"{rounds} rounds"
-    return f"in {times} of fresh laboratories, since weights left {effective:.0f} effective of {laboratories}"
 
 
 def laboratory_texts(draws: PosteriorDraws, version: str, provenance: Sequence[str]) -> tuple[str, str]:
@@ -125,5 +120,4 @@ def off_middle(values: Array) -> Array:
     values = np.where(positive, np.log(np.where(positive, values, 1.0)), values)
     spread = values.std(axis=0)
     off = np.divide(values - np.median(values, axis=0), spread, out=np.zeros_like(values), where=spread > 0.0)
-    found: Array = np.square(off).mean(axis=1)
-    return found
+    return np.square(off).mean(axis=1)

@@ -79,8 +79,7 @@ def shared_covariance(measured: Measurements) -> Array:
 def person_covariance(measured: Measurements, between: Array) -> Array:
     """Σ (..., conditions, conditions): people as simulated, and their use of the scale of ratings."""
     rated = _rated(measured)
-    found: Array = between + RATING_PEOPLE**2 * np.outer(rated, rated) + NUGGET * np.eye(len(rated))
-    return found
+    return between + RATING_PEOPLE**2 * np.outer(rated, rated) + NUGGET * np.eye(len(rated))
 
 
 def log_errors(measured: Measurements, within: Array) -> Array:

@@ -237,7 +237,7 @@ def observed(
         prior=prior,
         played=main,
         rig=rig.name,
-        rig_changes=tuple(rig.changes),
+        rig_changes=rig.changes,
         memory=crowd.memory,
         seed=seed,
         version=own_version(),

@@ -189,8 +189,7 @@ def plan(
     prior = LaboratoryPrior.of(crowd.observer, crowd.memory)
     number = laboratories_for(max(2, *(len(list(each)) for each in sets)), draws)
     laboratories = prior.first(number, seed)
-    total = number * len(sets) + len(participants) * len(trials)
-    step = step_counter(progress, total)
+    step = step_counter(progress, number * len(sets) + len(participants) * len(trials))
     stages = [stage(each, rig, prior, seed=seed, tracking=crowd.tracking) for each in sets]
     played = [each.confusions(laboratories, step) for each in stages]
     apart = None if other is None else played[0].correct - played[1].correct
@@ -205,7 +204,7 @@ def plan(
         designs=tuple(designs),
         wanted=wanted if wanted is not None else (WIDTH if other is None else POWER),
         rig=rig.name,
-        rig_changes=tuple(rig.changes),
+        rig_changes=rig.changes,
         memory=crowd.memory,
         seed=seed,
         draws=number,
@@ -244,9 +243,8 @@ def _simulated(played: Sequence[Confusions], people: int, trials: int, seed: np.
     truth = (played[0].correct - played[1].correct)[where]
     shown = np.abs(each.mean(axis=1)) > half
     right = np.sign(each.mean(axis=1)) == np.sign(truth)
-    return ExperimentSize(
-        people, trials, float(2.0 * half.mean()), float((shown & right).mean()), float((shown & ~right).mean())
-    )
+    width, found, wrong = (2.0 * half).mean(), (shown & right).mean(), (shown & ~right).mean()
+    return ExperimentSize(people, trials, float(width), float(found), float(wrong))
 
 
 def _shares(
@@ -258,5 +256,4 @@ def _shares(
     shown = np.full(chances.shape, trials // icons)
     if rest := trials % icons:
         shown += rng.random(chances.shape).argsort(axis=-1) < rest
-    found: Array = rng.binomial(shown, np.minimum(chances, 1.0)).sum(axis=-1) / trials
-    return found
+    return rng.binomial(shown, np.minimum(chances, 1.0)).sum(axis=-1) / trials

@@ -54,8 +54,7 @@ class Confusions:
     @property
     def pooled(self) -> Array:
         """Mean over people (laboratories, icons, icons)."""
-        found: Array = self.probability.mean(axis=1, dtype=np.float64)
-        return found
+        return self.probability.mean(axis=1, dtype=np.float64)
 
     def of(self, which: NDArray[np.int64]) -> Confusions:
         """Those of some laboratories."""
@@ -75,23 +74,18 @@ class Stage:
     prior: LaboratoryPrior
     skins: tuple[Array, Array]
 
-    @property
-    def people(self) -> int:
-        """Number of virtual people of each laboratory."""
-        return self.played.people
-
     def confusions(self, some: Laboratories, step: Callable[[], None] | None = None) -> Confusions:
         """Confusions of the icons by the people of each laboratory; `step` is called after each."""
         values, prior = self.prior.values(some), self.prior
 
         def one(k: int) -> Small:
-            observer, people = prior.observer_and_people(values[k], int(some.seed[k]), self.people)
+            observer, people = prior.observer_and_people(values[k], int(some.seed[k]), self.played.people)
             people = replace(people, contact_resistance=self.skins[0], outer_layer=self.skins[1])
             felt = respond(self.played, people, observer, detection=False)
             named = identify(felt, prior.form, people, observer, int(some.seed[k]), SAMPLES)[1].probability
             return np.maximum(named, LEAST_PROBABILITY).astype(np.float32)
 
-        found = np.empty((len(some), self.people, len(self.icons), len(self.icons)), dtype=np.float32)
+        found = np.empty((len(some), self.played.people, len(self.icons), len(self.icons)), dtype=np.float32)
         for k, each in enumerate(in_order(one, range(len(some)))):
             found[k] = each
             if step is not None:

@@ -103,6 +103,5 @@ def opened(sealed: SealedPrediction, trials: Trials, icons: IconSet, rig: Rig) -
         "skin temperature alone": score(skin_alone(list(icons), rig)),
         "best that its matrix allows": score(own, shown[:, None] * own),
     }
-    return SealedScores(
-        sealed, int(number), float(counts.trace() / number), scores, math.sqrt(float(shown @ spread)) / number
-    )
+    chance = math.sqrt(float(shown @ spread)) / number
+    return SealedScores(sealed, int(number), float(counts.trace() / number), scores, chance)

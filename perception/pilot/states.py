@@ -105,25 +105,17 @@ class LaboratoryPrior:
         offsets = rng.standard_normal((n, len(CHANNELS)))
         return Laboratories(np.hstack([self._whitened[chosen], normal, offsets]), rng.integers(SEEDS, size=n))
 
-    def constants(self, some: Laboratories) -> Array:
-        """Constants (n, constants) in their own units, in the order of the draws."""
-        places = self._places(some)[:, : len(self._scales)].tolist()
-        return np.array([[p.to_value(v) for p, v in zip(self._scales, row, strict=True)] for row in places])
-
     def values(self, some: Laboratories) -> Array:
-        """Constants, memory in its own units, and offsets (ln), (n, names)."""
-        constants, first = self.constants(some), self._held
-        own = self._places(some)[:, len(self._scales) :]
+        """Constants in their own units, in the order of the draws, memory in its own, and offsets (ln), (n, names)."""
+        first, places = self._held, self._middle + some.place[:, : self._held] @ self._spread
+        rows, own = places[:, : len(self._scales)].tolist(), places[:, len(self._scales) :]
+        constants = np.array([[p.to_value(v) for p, v in zip(self._scales, row, strict=True)] for row in rows])
         scores = np.hstack([own, some.place[:, first : first + self._free]])
         memory = np.array(
             [[p.at(NormalDist().cdf(z)) for p, z in zip(self.memory, row, strict=True)] for row in scores.tolist()]
         ).reshape(len(some), len(self.memory))
         spread = constants[:, self.draws.names.index(BETWEEN_LABORATORIES)]
         return np.hstack([constants, memory, spread[:, None] * some.place[:, -len(CHANNELS) :]])
-
-    def _places(self, some: Laboratories) -> Array:
-        found: Array = self._middle + some.place[:, : self._held] @ self._spread
-        return found
 
     def observer_and_people(self, values: Array, seed: int, people: int) -> tuple[Observer, People]:
         """The observer of one laboratory, by a row of `values`, and people who come there."""

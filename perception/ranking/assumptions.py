@@ -92,10 +92,8 @@ def explained_together(values: Array, predicted: Array) -> float:
 
 def scores_of(values: Array) -> Array:
     """Normal scores (draws,) of the ranks of some values."""
-    scores = np.empty(values.size)
-    scores[np.argsort(values, kind="stable")] = [
-        NormalDist().inv_cdf((k + 0.5) / values.size) for k in range(values.size)
-    ]
+    count, scores = values.size, np.empty(values.size)
+    scores[np.argsort(values, kind="stable")] = [NormalDist().inv_cdf((k + 0.5) / count) for k in range(count)]
     return scores
 
 
@@ -201,11 +199,10 @@ def _of_people(fitted: PeopleFit, rig: Rig, observer: Observer) -> list[Assumpti
     mm = layer.thickness_m * 1e3
 
     def of_area(factor: float) -> Array:
-        own, other = (
-            [observer.sensitivity(channel, share * rig.contact.area_m2, rig.site) for channel in CHANNELS]
-            for share in (1.0, factor)
-        )
-        moved = {f"threshold_{c}": math.log(a / b) for c, a, b in zip(CHANNELS, own, other, strict=True)}
+        areas, moved = (rig.contact.area_m2, factor * rig.contact.area_m2), {}
+        for channel in CHANNELS:
+            own, other = (observer.sensitivity(channel, area_m2, rig.site) for area_m2 in areas)
+            moved[f"threshold_{channel}"] = math.log(own / other)
         return fitted.shifted(**moved)
 
     def of(column: str) -> Callable[[float], Array]:
@@ -220,12 +217,8 @@ def _of_people(fitted: PeopleFit, rig: Rig, observer: Observer) -> list[Assumpti
     found = []
     for name, key, unit, value, factor, terms_of in each:
         low, high = terms_of(1.0 / factor), terms_of(factor)
-        found.append(
-            Assumption(
-                *(name, key, unit, value, value / factor, value * factor, fitted.at(low), fitted.at(high)),
-                *(fitted.error(high - low), "people"),
-            )
-        )
+        correct, error = (fitted.at(low), fitted.at(high)), fitted.error(high - low)
+        found.append(Assumption(name, key, unit, value, value / factor, value * factor, *correct, error, "people"))
     return found
 
 

@@ -259,11 +259,11 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
     ordered = [parts[number] for number in range(job.batches)]
 
     def joined(name: str) -> Array:
-        found: Array = np.concatenate([getattr(part, name) for part in ordered])
-        return found
+        return np.concatenate([getattr(part, name) for part in ordered])
 
-    mean = normalised(_added([part.confusion for part in ordered]) / job.people)
-    reports = _added([part.reported[0] for part in ordered])
+    # In order, so that the sums do not depend on which batch was ready first.
+    mean = normalised(sum(part.confusion for part in ordered) / job.people)
+    reports = np.asarray(sum(part.reported[0] for part in ordered))
     return PooledResult(
         detection=pooled_detection(joined("detected"), joined("cold_share"), reports, report_step(DT_S)),
         pairs=joined("d_prime"),
@@ -283,14 +283,6 @@ def _sampling_error(job: Job, confusion: Array, people: int = 1) -> float:
     if len(job.icons) <= (1 if direct else 2):
         return 0.0
     return sampling_error(confusion, people * (NAMED_SAMPLES if direct else SAMPLES))
-
-
-def _added(parts: Sequence[Array]) -> Array:
-    """The sum in order, so that it does not depend on which batch was ready first."""
-    total = np.zeros_like(parts[0])
-    for part in parts:
-        total += part
-    return total
 
 
 def code_digest() -> str:

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
-from typing import Any
+from typing import Any, cast
 
 from thermicon.icons.installing import install
 
@@ -102,5 +102,4 @@ def _result(task: Any, address: str) -> BatchResult:
         ) from error
     if code != code_digest():
         raise ClusterError(f"a worker of the cluster at {address} has another version of thermicon: install the same")
-    batch: BatchResult = result
-    return batch
+    return cast(BatchResult, result)

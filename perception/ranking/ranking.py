@@ -15,7 +15,7 @@ from thermicon.icons.drawn import Drawn, Tabled
 from thermicon.icons.number_text import count_of
 
 from ..arrays import Array
-from ..identification.laboratory import NewLaboratory
+from ..identification.laboratory import NewLaboratory, interval_of
 from ..observer.observer_model import Crowd, ObserverModel
 from .assumptions import Assumptions, assumptions_of
 from .rules import RuleResult
@@ -160,7 +160,7 @@ class Ranking(Drawn, Tabled):
     @property
     def proportion_correct_interval(self) -> tuple[float, float]:
         """Proportion correct of the middle 95 % of people."""
-        return _interval(self.felt.correct)
+        return interval_of(self.felt.correct)
 
     @property
     def information_bits(self) -> float:
@@ -170,7 +170,7 @@ class Ranking(Drawn, Tabled):
     @property
     def information_bits_interval(self) -> tuple[float, float]:
         """Information of the middle 95 % of people, bits."""
-        return _interval(self.felt.bits)
+        return interval_of(self.felt.bits)
 
     @property
     def bits_per_s(self) -> float:
@@ -310,8 +310,3 @@ class Ranking(Drawn, Tabled):
 def with_changes(rig: str, changes: Sequence[str]) -> str:
     """Name of a rig with its changed keys, as in `thenar with contact.area_cm2=4`."""
     return f"{rig} with {', '.join(changes)}" if changes else rig
-
-
-def _interval(values: Array) -> tuple[float, float]:
-    low, high = np.percentile(values, [2.5, 97.5])
-    return float(low), float(high)

@@ -22,14 +22,7 @@ from ..arrays import Array
 from ..identification.episodes import PARTS, Episode, Episodes, distance_shares
 from ..observer.channels import CHANNELS, Channel, MemoryForm
 from ..observer.observer import Observer
-from ..sensation.features import (
-    STILL_K,
-    direction_words,
-    directions,
-    excursion_K,
-    excursion_rate_K_per_s,
-    receptor_C,
-)
+from ..sensation import features
 from ..sensation.percept import Percept
 from .rules import load_rules
 
@@ -130,8 +123,8 @@ def pair_reasons(
         both = f"{_name(a)} and {_name(b)}"
         return (f"nothing differs: {both} move the receptors in the same way, so their names are guessed",)
     found = [_carries((_name(a), _name(b)), episodes, places, observer, memory), _direction(a, b)]
-    for channel in directions(a):
-        if channel in directions(b):
+    for channel in features.directions(a):
+        if channel in features.directions(b):
             found += [_peaks(a, b, channel), _rates(a, b, channel)]
     return (*found, _onsets(a, b, *felt))
 
@@ -155,26 +148,23 @@ def _carries(
         return f"mostly distinguished by what is felt: {felt}: {size}"
     words, unit = FEATURES[most]
     first, second = (value or 0.0 for value in most_different(one, other, most))
-    sizes = f"{names[0]} {_number(first)}, {names[1]} {_number(second)} {unit}"
+    one_size, other_size = (f"{value:.3g}" if value < 100.0 else f"{value:.0f}" for value in (first, second))
+    sizes = f"{names[0]} {one_size}, {names[1]} {other_size} {unit}"
     return f"mostly distinguished by {words}: {sizes}: {size}"
-
-
-def _number(value: float) -> str:
-    return f"{value:.3g}" if value < 100.0 else f"{value:.0f}"
 
 
 def _direction(a: Trace, b: Trace) -> str:
     parts = []
     for trace in (a, b):
-        moved = directions(trace)
-        sizes = " and ".join(f"{excursion_K(trace, c):+.2f} K at the {c} receptor" for c in moved)
-        parts.append(f"{_name(trace)} {direction_words(trace)}" + (f" ({sizes})" if sizes else ""))
-    head = "same direction" if directions(a) == directions(b) else "directions differ"
+        moved = features.directions(trace)
+        sizes = " and ".join(f"{features.excursion_K(trace, c):+.2f} K at the {c} receptor" for c in moved)
+        parts.append(f"{_name(trace)} {features.direction_words(trace)}" + (f" ({sizes})" if sizes else ""))
+    head = "same direction" if features.directions(a) == features.directions(b) else "directions differ"
     return f"{head}: {parts[0]}; {parts[1]}"
 
 
 def _peaks(a: Trace, b: Trace, channel: Channel) -> str:
-    peak_a, peak_b = excursion_K(a, channel), excursion_K(b, channel)
+    peak_a, peak_b = features.excursion_K(a, channel), features.excursion_K(b, channel)
     needed = load_rules().one("peak", channel=channel).central
     gap = abs(peak_a - peak_b)
     digits = decimals(gap, needed)
@@ -185,7 +175,7 @@ def _peaks(a: Trace, b: Trace, channel: Channel) -> str:
 
 
 def _rates(a: Trace, b: Trace, channel: Channel) -> str:
-    rate_a, rate_b = excursion_rate_K_per_s(a, channel), excursion_rate_K_per_s(b, channel)
+    rate_a, rate_b = features.excursion_rate_K_per_s(a, channel), features.excursion_rate_K_per_s(b, channel)
     needed = load_rules().one("rate ratio").central
     low, high = sorted((abs(rate_a), abs(rate_b)))
     if low == 0.0:
@@ -218,11 +208,11 @@ def _alike(a: Trace, b: Trace) -> bool:
     rows = max(a.time_s.size, b.time_s.size)
 
     def held(trace: Trace, channel: Channel) -> Array:
-        values = receptor_C(trace, channel)
+        values = features.receptor_C(trace, channel)
         return np.pad(values, (0, rows - values.size), mode="edge")
 
     apart_K = max(float(np.abs(held(a, channel) - held(b, channel)).max()) for channel in CHANNELS)
-    return apart_K < STILL_K and bool(a.time_s[1] == b.time_s[1])
+    return apart_K < features.STILL_K and bool(a.time_s[1] == b.time_s[1])
 
 
 def _name(trace: Trace) -> str:

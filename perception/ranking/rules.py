@@ -13,19 +13,10 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from thermicon.circuit.records import Record, RecordTable, load_records
-from thermicon.circuit.rig.skin import STRATUM_CORNEUM
-from thermicon.icons.number_text import significant
+from thermicon.icons.number_text import significant, unit_text
 
 from ..observer.observer import CHANNELS, DATA, Channel
-from ..sensation.features import (
-    direction_words,
-    directions,
-    excursion_K,
-    excursion_rate_K_per_s,
-    passing_s,
-    peak_lead_s,
-    receptor_C,
-)
+from ..sensation import features
 from ..sensation.percept import Percept
 
 if TYPE_CHECKING:
@@ -89,10 +80,10 @@ def icon_rules(trace: Trace, percept: Percept) -> tuple[RuleResult, ...]:
     """
     table = load_rules()
     found, slow = [], set()
-    moved = directions(trace) or CHANNELS
+    moved = features.directions(trace) or CHANNELS
     for channel in moved:
-        change = abs(excursion_K(trace, channel))
-        rate = abs(excursion_rate_K_per_s(trace, channel))
+        change = abs(features.excursion_K(trace, channel))
+        rate = abs(features.excursion_rate_K_per_s(trace, channel))
         found.append(_at_least(table.one("change at the receptor", channel=channel), channel, change))
         found.append(_at_least(table.one("rate at the receptor"), channel, rate))
         if not found[-1].passed:
@@ -100,11 +91,11 @@ def icon_rules(trace: Trace, percept: Percept) -> tuple[RuleResult, ...]:
     for channel in moved if percept.channel is None else (percept.channel,):
         if channel not in slow:
             found.append(_latency(table.one("latency", channel=channel), channel, percept.onset_s))
-    for channel in directions(trace):
-        lead = peak_lead_s(trace, percept, channel)
+    for channel in features.directions(trace):
+        lead = features.peak_lead_s(trace, percept, channel)
         if lead is not None:
             found.append(_felt_peak(table.one("felt peak", channel=channel), channel, lead))
-    found.append(_inside(table.one("neutral zone"), "cold", float(receptor_C(trace, "cold")[0])))
+    found.append(_inside(table.one("neutral zone"), "cold", float(features.receptor_C(trace, "cold")[0])))
     return tuple(found)
 
 
@@ -114,21 +105,23 @@ def pair_rules(a: Trace, b: Trace) -> tuple[RuleResult, ...]:
     All of them are read off the two traces: onsets are the times at which a receptor passes its threshold.
     """
     table = load_rules()
-    moved_a, moved_b = directions(a), directions(b)
+    moved_a, moved_b = features.directions(a), features.directions(b)
     shared = tuple(c for c in moved_a if c in moved_b)
     least = {channel: table.one("change at the receptor", channel=channel).central for channel in CHANNELS}
-    felt_a, felt_b = ({c for c in directions(t) if abs(excursion_K(t, c)) >= least[c]} for t in (a, b))
+    felt_a, felt_b = (
+        {c for c in features.directions(t) if abs(features.excursion_K(t, c)) >= least[c]} for t in (a, b)
+    )
     differ = felt_a != felt_b
     verdict = "differ" if differ else "are the same" if moved_a == moved_b else "differ below the threshold alone"
-    words = ", ".join(f"{each.icon or 'the cue'} {direction_words(each)}" for each in (a, b))
+    words = ", ".join(f"{each.icon or 'the cue'} {features.direction_words(each)}" for each in (a, b))
     text = f"direction: {words}: directions {verdict}"
     ours = [_result(table.one("direction"), None, differ, float(differ), float(differ) - 1.0, 1.0, text)]
     theirs = []
     for channel in shared:
-        gap = abs(excursion_K(a, channel) - excursion_K(b, channel))
+        gap = abs(features.excursion_K(a, channel) - features.excursion_K(b, channel))
         theirs.append(_at_least(table.one("amplitude difference", channel=channel), channel, gap))
         ours.append(_at_least(table.one("peak", channel=channel), channel, gap))
-        rates = sorted(abs(excursion_rate_K_per_s(t, channel)) for t in (a, b))
+        rates = sorted(abs(features.excursion_rate_K_per_s(t, channel)) for t in (a, b))
         if rates[0] > 0.0:
             ours.append(_at_least(table.one("rate ratio"), channel, rates[1] / rates[0]))
     ours.append(_onset(table, a, b))
@@ -145,29 +138,26 @@ def rig_rules(rig: Rig) -> tuple[RuleResult, ...]:
     for channel in CHANNELS:
         record = table.one("depth", channel=channel)
         depth_m = rig.skin.cold_receptor_m if channel == "cold" else rig.skin.warm_receptor_m
-        layer = rig.skin.layers[0]
-        dead_m = layer.thickness_m if layer.name == STRATUM_CORNEUM else 0.0
-        result = _inside(record, channel, round((depth_m - dead_m) * 1e3, 9))
+        result = _inside(record, channel, round((depth_m - rig.skin.corneum_m) * 1e3, 9))
         bottoms = zip(accumulate(layer.thickness_m for layer in rig.skin.layers), rig.skin.layers, strict=True)
         inside = next((layer for bottom_m, layer in bottoms if depth_m <= bottom_m), rig.skin.layers[-1])
-        where = f"{result.text}; on this rig that is inside the {inside.name}"
-        found.append(replace(result, text=where))
+        found.append(replace(result, text=f"{result.text}; on this rig that is inside the {inside.name}"))
     return tuple(found)
 
 
 def first_passing(trace: Trace) -> tuple[float, Channel] | None:
     """The time (s) when a receptor first passes its rule's threshold, and which; None where neither does."""
     table = load_rules()
-    times = [(passing_s(trace, c, table.one("change at the receptor", channel=c).central), c) for c in CHANNELS]
-    found = sorted((time, channel) for time, channel in times if time is not None)
-    return found[0] if found else None
+    least = {channel: table.one("change at the receptor", channel=channel).central for channel in CHANNELS}
+    times = [(features.passing_s(trace, channel, least[channel]), channel) for channel in CHANNELS]
+    return min(((time, channel) for time, channel in times if time is not None), default=None)
 
 
 def _latency(record: Record, channel: Channel, onset_s: float | None) -> RuleResult:
     if onset_s is not None:
         return _inside(record, channel, onset_s)
     low, high = record.interval
-    band = f"{low:.3g} to {high:.3g}{_unit(record)}"
+    band = f"{low:.3g} to {high:.3g}{unit_text(record.unit)}"
     text = f"latency: the nominal person does not feel the icon, so it has no onset to compare with {band}"
     return _result(record, channel, False, None, None, high, text, low)
 
@@ -194,7 +184,7 @@ def _onset(table: RecordTable, a: Trace, b: Trace) -> RuleResult:
 
 
 def _at_least(record: Record, channel: Channel, value: float) -> RuleResult:
-    limit, unit = record.central, _unit(record)
+    limit, unit = record.central, unit_text(record.unit)
     said = "passes" if value >= limit else "fails"
     shown, least = significant(value, limit)
     name = SAID.get(record.quantity, record.quantity)
@@ -204,7 +194,7 @@ def _at_least(record: Record, channel: Channel, value: float) -> RuleResult:
 
 def _inside(record: Record, channel: Channel, value: float) -> RuleResult:
     low, high = record.interval
-    unit, margin = _unit(record), min(value - low, high - value)
+    unit, margin = unit_text(record.unit), min(value - low, high - value)
     said = "passes" if margin >= 0 else "fails"
     shown, least, most = significant(value, low, high)
     text = f"{record.quantity} ({channel}): {shown}{unit} against {least} to {most}{unit}: {said}"
@@ -224,7 +214,3 @@ def _result(
     name = record.quantity if channel is None else f"{record.quantity} ({channel})"
     model = record.get("basis") == "model"
     return RuleResult(name, passed, value, margin, threshold, record.unit, record.source, text, threshold_low, model)
-
-
-def _unit(record: Record) -> str:
-    return "" if record.unit == "1" else f" {record.unit}"

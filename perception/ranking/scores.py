@@ -200,10 +200,8 @@ def disagreements(icons: Sequence[IconScore], pairs: Sequence[PairScore]) -> tup
             word = "distinguishable" if pair.rules_pass else "not distinguishable"
             side = "above" if model else "below"
             d_prime = f"{pair.d_prime:.{decimals(pair.d_prime, DISTINGUISHABLE_DPRIME, 1)}f}"
-            text = (
-                f"{pair.a} and {pair.b}: rules: {word}; "
-                f"model: d′ {d_prime}, {side} the {DISTINGUISHABLE_DPRIME} criterion"
-            )
+            model_says = f"model: d′ {d_prime}, {side} the {DISTINGUISHABLE_DPRIME} criterion"
+            text = f"{pair.a} and {pair.b}: rules: {word}; {model_says}"
             found.append({"a": pair.a, "b": pair.b, "rules": pair.rules_pass, "model": model, "text": text})
     return tuple(found)
 
@@ -218,6 +216,8 @@ def assemble(
     observer: Observer,
 ) -> tuple[tuple[IconScore, ...], tuple[PairScore, ...]]:
     """Scores of all icons and of all pairs, in file order."""
+    from thermicon.circuit.safety.verdict import judge_safety
+
     middle, pooled, detected = all_.middle, all_.pooled, all_.detected
     onsets, channels = all_.detection.onset_s, all_.detection.channel
     compared = PairInputs(traces, percepts, remembered(percepts, observer), observer, memory)
@@ -238,7 +238,7 @@ def assemble(
         of_icon[pair.b].append(pair)
     scored = []
     for k, (icon, trace, lasting, percept) in enumerate(zip(icons, traces, durations_s, percepts, strict=True)):
-        safe, reason, cautions = _verdict(trace)
+        safety = judge_safety(trace)
         scored.append(
             IconScore(
                 name=icon.name,
@@ -250,9 +250,9 @@ def assemble(
                 delay_s=(delay_s(trace, "cold"), delay_s(trace, "warm")),
                 proportion_correct=float(pooled[k, k]),
                 reachable=bool(trace.reachable),
-                safe=safe,
-                reason=reason,
-                cautions=cautions,
+                safe=safety.safe,
+                reason="; ".join(filter(None, (safety.reason, trace.reason))) or None,
+                cautions=safety.cautions,
                 rules=icon_rules(trace, percept),
                 outside_data=outside_data(trace),
                 duration_s=lasting,
@@ -261,16 +261,6 @@ def assemble(
             )
         )
     return tuple(scored), tuple(pairs)
-
-
-def _verdict(trace: Trace) -> tuple[bool, str | None, tuple[str, ...]]:
-    """Safe, every reason why it is not safe or cannot be played, and what is amber: soft limits that it passes."""
-    from thermicon.circuit.safety.verdict import judge_safety
-
-    safety = judge_safety(trace)
-    objection = [reason for reason in (safety.reason if not safety.safe else None, trace.reason) if reason]
-    amber = tuple(str(finding) for finding in safety.findings if finding.severity != "hard")
-    return bool(safety.safe), "; ".join(objection) or None, amber
 
 
 def objection(trace: Trace, soft: bool = False) -> str | None:
@@ -285,8 +275,7 @@ def objection(trace: Trace, soft: bool = False) -> str | None:
         return f"is not safe: {verdict.reason}"
     if not trace.reachable:
         return f"is not reached: {trace.reason}"
-    passed = (f"is amber: {each}" for each in verdict.findings if each.severity != "hard")
-    return next(passed, None) if soft else None
+    return next((f"is amber: {each}" for each in verdict.cautions), None) if soft else None
 
 
 def energy_J(trace: Trace, until_s: float) -> float:

@@ -98,9 +98,8 @@ class UncertainRig:
         for share, place in product(NODES, NODES):
             keys = {"contact.resistance_m2K_per_W": contact.at(share), "skin.layer.0.thickness_mm": layer.at(place)}
             met = rig.with_(**keys)
-            played = ReceptorTemperatures.at_depths(
-                icons, people, met, depths, end_s, RATE_HZ, tracking, designed_on=rig
-            )
+            how = depths, end_s, RATE_HZ, tracking
+            played = ReceptorTemperatures.at_depths(icons, people, met, *how, designed_on=rig)
             grid.append(np.stack(played.rungs_C))
         return cls((contact, layer), np.stack(grid), played, people.outer_layer)
 
@@ -230,19 +229,10 @@ def sensitivity(
     end = run_end_s((duration_s(icon, rig) for icon in members), RATE_HZ)
     uncertain = UncertainRig.simulate(members, rig, people, end, model.some_draws(draws), crowd.tracking)
     shares = latin(2, draws, seed + 1)
-    each = laboratory_draws(
-        lambda place: uncertain.played(*shares[place].tolist()),
-        people,
-        crowd.memory,
-        model,
-        draws=draws,
-        seed=seed,
-        step=step_counter(progress, draws),
-    )
-    columns = [
-        [parameter.at(float(share)) for share in column]
-        for parameter, column in zip(uncertain.parameters, shares.T, strict=True)
-    ]
+    step, played = step_counter(progress, draws), lambda place: uncertain.played(*shares[place].tolist())
+    each = laboratory_draws(played, people, crowd.memory, model, draws=draws, seed=seed, step=step)
+    pairs = zip(uncertain.parameters, shares.T.tolist(), strict=True)
+    columns = [[parameter.at(share) for share in column] for parameter, column in pairs]
     acting = np.flatnonzero(each.acting())
     names = (*(each.names[k] for k in acting), *(parameter.name for parameter in uncertain.parameters))
     values = np.hstack([each.values[:, acting], np.array(columns).T])

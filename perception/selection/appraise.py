@@ -14,17 +14,8 @@ from thermicon.icons.model.arguments import InputError, checked
 
 from ..arrays import Array
 from ..identification.measures import information_bits, proportion_correct
-from ..identification.population import (
-    RATE_HZ,
-    PopulationResponse,
-    ReceptorTemperatures,
-    identify,
-    memory_dprime,
-    respond,
-    run_end_s,
-)
+from ..identification.population import RATE_HZ, PopulationResponse, ReceptorTemperatures, identify, respond, run_end_s
 from ..identification.task import USUAL, Task
-from ..observer.channels import USUAL_MEMORY
 from ..observer.observer import Observer
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..observer.people import People
@@ -109,13 +100,6 @@ def nearest_two(distances: Array) -> tuple[int, int]:
     first, second = np.triu_indices(len(distances), 1)
     k = int(distances[first, second].argmin())
     return int(first[k]), int(second[k])
-
-
-def population_dprime(icons: Sequence[Icon], rig: Rig, crowd: People) -> tuple[Array, Array]:
-    """Pairwise d′ (people, icons, icons) from memory, by the shipped observer, and durations (s) of the icons."""
-    nominal = Observer.load()
-    felt, durations = population_response(icons, rig, crowd, observer=nominal)
-    return memory_dprime(felt, USUAL_MEMORY, crowd.memory, nominal, USUAL), durations
 
 
 def population_response(

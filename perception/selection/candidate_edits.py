@@ -219,8 +219,7 @@ def _changed(of: Screening, way: Way, w: int, step: int, log: float, digits: int
 
 def _repeats(of: Screening, place: int) -> list[CandidateEdit]:
     icon = of.kept.icons[place]
-    count_of = len(icon.statements)
-    once = "its one statement" if count_of == 1 else f"its {count_of} statements"
+    once = "its one statement" if len(icon.statements) == 1 else f"its {len(icon.statements)} statements"
 
     def made(count: int) -> tuple[Icon, str, str]:
         return repeated(icon, count), once, f"repeat {count} {{ {once} }}"

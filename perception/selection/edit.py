@@ -163,7 +163,10 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
         end_s = max(kept.end_s, run_end_s([float(kept.durations_s[one.place]) + one.added_s], POOL_HZ))
         parted, harmed = _with_people(ranking, screening, one, crowd, end_s)
         if parted >= wanted and not harmed and parse(str(one.icon))[one.icon.name].statements == one.icon.statements:
-            gain = _gain(ranking, one)
+            people = ranking.crowd.but(people=min(ranking.people, MOST_RECOUNTED))
+            sets = job.icons, _edited(ranking, one)
+            now, then = (appraise(each, job.rig, crowd=people, task=job.task).proportion_correct for each in sets)
+            gain = then - now
             if gain <= ROUNDING:
                 return NoEdit(
                     f"separating them changes the proportion correct of the set by {100 * gain:+.1f} points only"
@@ -205,7 +208,7 @@ def _with_people(
         after = medians([one.icon, *(job.icons[k] for k in others)], USUAL)[0, 1:]
         return float(after[0]), bool(worse(before[one.place, others[1:]], after[1:], screening.wanted).any())
     # The range, and what is left behind, move every pair of the set.
-    edited = [one.icon if k == one.place else icon for k, icon in enumerate(job.icons)]
+    edited = _edited(ranking, one)
     task, _ = prepare_task(job.task, edited, job.rig, end_s, job.task.counted, job.tracking, nominal)
     after = medians(edited, task)
     rest = np.triu(np.ones_like(after, dtype=bool), 1)
@@ -213,25 +216,14 @@ def _with_people(
     return float(after[i, j]), bool(worse(before[rest], after[rest], screening.wanted).any())
 
 
-def _gain(ranking: Ranking, one: CandidateEdit) -> float:
-    """By how much an edit raises the proportion correct of the set, for the first people."""
-    job, crowd = ranking.job, ranking.crowd.but(people=min(ranking.people, MOST_RECOUNTED))
-    edited = [one.icon if k == one.place else icon for k, icon in enumerate(job.icons)]
-    before, after = (appraise(icons, job.rig, crowd=crowd, task=job.task) for icons in (job.icons, edited))
-    return after.proportion_correct - before.proportion_correct
+def _edited(ranking: Ranking, one: CandidateEdit) -> list[Icon]:
+    return [one.icon if k == one.place else icon for k, icon in enumerate(ranking.job.icons)]
 
 
 def _recounted(ranking: Ranking, one: CandidateEdit, crowd: People, end_s: float) -> float:
     """Share of the first people whose number of episodes of the icon changes with the edit."""
     job, few = ranking.job, crowd.part(0, min(len(crowd), MOST_RECOUNTED))
-    felt, _ = population_response(
-        [job.icons[one.place], one.icon],
-        job.rig,
-        few,
-        job.tracking,
-        rate_Hz=POOL_HZ,
-        end_s=end_s,
-        observer=ranking.model.nominal,
-    )
+    both, how = [job.icons[one.place], one.icon], (job.rig, few, job.tracking)
+    felt, _ = population_response(both, *how, rate_Hz=POOL_HZ, end_s=end_s, observer=ranking.model.nominal)
     before, after = felt.episodes.counts.T
     return float((before != after).mean())

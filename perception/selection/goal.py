@@ -138,8 +138,12 @@ class Goal:
         seen: dict[tuple[str, float | None], GoalPart] = {}
         for part in self.parts:
             other = seen.setdefault((part.quantity, part.people), part)
+            if other is not part and other.limit == part.limit:
+                raise GoalError(f"goal: {other.text!r} stands twice: leave one out")
             if other is not part:
-                raise GoalError(f"goal: {_same(other, part)}")
+                kept = (min if part.at_most else max)((other, part), key=lambda each: each.limit).text
+                same = f"{other.text!r} and {part.text!r} limit the same quantity"
+                raise GoalError(f"goal: {same}: keep the stricter, {kept!r}")
 
     @classmethod
     @checked
@@ -191,14 +195,6 @@ class Goal:
 
     def __repr__(self) -> str:
         return f"Goal({self.text})"
-
-
-def _same(one: GoalPart, other: GoalPart) -> str:
-    """That two parts limit the same quantity, and which of them to keep."""
-    if one.limit == other.limit:
-        return f"{one.text!r} stands twice: leave one out"
-    kept = (min if one.at_most else max)((one, other), key=lambda part: part.limit)
-    return f"{one.text!r} and {other.text!r} limit the same quantity: keep the stricter, {kept.text!r}"
 
 
 @lru_cache(maxsize=1)

@@ -94,8 +94,7 @@ class SearchRun:
     def start(self, judge: Evaluator, rng: np.random.Generator) -> list[Candidate]:
         """The best of the members that the families count out, or of a sample of them."""
         pool = [*self.fixed, *sample_candidates(self.families, SAMPLED, rng)]
-        found = self.best(pool, judge)
-        if found is None:
+        if (found := self.best(pool, judge)) is None:
             raise ChoiceError(self._nothing(judge, pool))
         return found
 
@@ -114,10 +113,9 @@ class SearchRun:
             about = held[len(self.fixed) :]
             near = [candidate.moved(rng, step * float(rng.exponential())) for candidate in about for _ in range(batch)]
             pool = [*held, *(candidate for candidate in near if candidate is not None)]
-            better = self.best(pool, judge, held)
-            moved = better is not None and [g.icon for g in better] != [g.icon for g in held]
-            held = better if better is not None else held
-            step = step if moved else max(SHRINK * step, FINEST)
+            better = self.best(pool, judge, held) or held
+            moved = [g.icon for g in better] != [g.icon for g in held]
+            held, step = better, step if moved else max(SHRINK * step, FINEST)
             tell(self.tried, held)
         return held
 

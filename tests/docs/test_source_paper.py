@@ -21,6 +21,7 @@ from source_paper.paper import (
     thermistors,
 )
 from source_paper.paper_differences import paper_differences, paper_table
+from tests.peltier import heat_absorbed_W
 from thermicon.circuit import Drive, Rig, simulate_current
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current
@@ -52,7 +53,7 @@ def test_the_limit_is_that_of_the_lowest_temperature_that_the_paper_states() -> 
     state = state_under_current(net, held)
     cold, hot = (net.read(state, name) for name in ("display_C", "hot_plate_C"))
     brought = (37.0 - cold) * 9e-4 / (5.4e-4 + 0.081e-3 / 0.24 + 2e-3 / 0.45)
-    assert rig.module.heat_absorbed_W(held, cold, hot) == pytest.approx(brought, rel=1e-6)
+    assert heat_absorbed_W(rig.module, held, cold, hot) == pytest.approx(brought, rel=1e-6)
     for other in (held - 0.1, held + 0.1):  # neither a tenth of an ampere less nor more is about 5 °C
         there = coldest_display_C(rig.with_(**{"driver.current_limit_A": other}))
         assert not claim.low <= there <= claim.high

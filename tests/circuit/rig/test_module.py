@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.builders import missing
-from tests.peltier import coldest_C, greatest_difference_A, heat_rejected_W
+from tests.peltier import coldest_C, greatest_difference_A, heat_absorbed_W, heat_rejected_W
 from thermicon.circuit import Rig
 from thermicon.circuit.rig.module import ZERO_C_IN_K, Datasheet, Extraction, Peltier, at_mean_C
 from thermicon.circuit.rig.modules import build_of, load_module, module_names
@@ -38,14 +38,14 @@ def test_most_heat_is_the_closed_form() -> None:
     best = 0.0521 * 300 / 6.35
     assert best == pytest.approx(2.4614, abs=1e-4)
     assert greatest_W(MODULE, TC, TH) == pytest.approx(17.2319, abs=1e-4)
-    assert MODULE.heat_absorbed_W(best, TC, TH) == pytest.approx(17.2319, abs=1e-4)
+    assert heat_absorbed_W(MODULE, best, TC, TH) == pytest.approx(17.2319, abs=1e-4)
 
 
 def test_best_coefficient_of_performance_is_the_closed_form() -> None:
     currents = np.linspace(0.05, 1.0, 200_001)
     power = MODULE.voltage_V(currents, TC, TH) * currents
-    assert power == pytest.approx(heat_rejected_W(MODULE, currents, TC, TH) - MODULE.heat_absorbed_W(currents, TC, TH))
-    ratio = MODULE.heat_absorbed_W(currents, TC, TH) / power
+    assert power == pytest.approx(heat_rejected_W(MODULE, currents, TC, TH) - heat_absorbed_W(MODULE, currents, TC, TH))
+    ratio = heat_absorbed_W(MODULE, currents, TC, TH) / power
     assert ratio.max() == pytest.approx(3.08797, abs=1e-5)
     assert currents[ratio.argmax()] == pytest.approx(0.29658, abs=1e-5)
 
@@ -64,7 +64,7 @@ def test_greatest_cooling_is_where_the_heat_peaks_behind_a_heat_sink() -> None:
     base, total = _plates(TC, 5.0)
     currents = np.linspace(1.0, 4.0, 300_001)
     hot = hot_plate_C(currents, base, total, 0.0521, 6.35)
-    peak = currents[np.argmax(MODULE.heat_absorbed_W(currents, TC, hot))]
+    peak = currents[np.argmax(heat_absorbed_W(MODULE, currents, TC, hot))]
     assert greatest_cooling_A(TC, base, total, 0.0521, 6.35, 0.1524) == pytest.approx(peak, abs=2e-5)
     assert peak < 2.4614
 
@@ -75,7 +75,7 @@ def test_current_for_heat_absorbs_that_heat_at_the_low_root(heat: float) -> None
     greatest = greatest_cooling_A(TC, base, total, 0.0521, 6.35, 0.1524)
     current = current_for_heat_A(heat, TC, base, total, 0.0521, 6.35, 0.1524, greatest, 0.0, 1e-13)
     assert current < greatest
-    assert MODULE.heat_absorbed_W(current, TC, hot_plate_C(current, base, total, 0.0521, 6.35)) == pytest.approx(heat)
+    assert heat_absorbed_W(MODULE, current, TC, hot_plate_C(current, base, total, 0.0521, 6.35)) == pytest.approx(heat)
     too_much = current_for_heat_A(50.0, TC, base, total, 0.0521, 6.35, 0.1524, greatest, 0.0, 1e-13)
     assert too_much == greatest
 
@@ -85,8 +85,8 @@ def test_greatest_difference_is_where_no_heat_is_absorbed_any_more() -> None:
     current = greatest_difference_A(MODULE, TH)
     assert greatest_W(MODULE, coldest, TH) == pytest.approx(0.0, abs=1e-9)
     for other in (0.98 * current, current, 1.02 * current):
-        assert MODULE.heat_absorbed_W(other, coldest, TH) <= 1e-9
-    assert MODULE.heat_absorbed_W(current, coldest, TH) == pytest.approx(0.0, abs=1e-9)
+        assert heat_absorbed_W(MODULE, other, coldest, TH) <= 1e-9
+    assert heat_absorbed_W(MODULE, current, coldest, TH) == pytest.approx(0.0, abs=1e-9)
 
 
 EVERY_SHEET = [(name, sheet) for name in module_names() for sheet in load_module(name)]
@@ -126,8 +126,8 @@ def test_three_figures_give_back_their_three(name: str, sheet: Datasheet) -> Non
 def test_four_figures_reproduce_the_printed_heat_exactly(name: str, sheet: Datasheet) -> None:
     found = sheet.four_figures()
     module, cold = made(found), sheet.t_hot_C - sheet.dt_max_K
-    assert module.heat_absorbed_W(sheet.i_max_A, sheet.t_hot_C, sheet.t_hot_C) == pytest.approx(sheet.q_max_W)
-    assert module.heat_absorbed_W(sheet.i_max_A, cold, sheet.t_hot_C) == pytest.approx(0.0, abs=1e-9)
+    assert heat_absorbed_W(module, sheet.i_max_A, sheet.t_hot_C, sheet.t_hot_C) == pytest.approx(sheet.q_max_W)
+    assert heat_absorbed_W(module, sheet.i_max_A, cold, sheet.t_hot_C) == pytest.approx(0.0, abs=1e-9)
     assert module.voltage_V(sheet.i_max_A, cold, sheet.t_hot_C) == pytest.approx(sheet.v_max_V)
     # what they pay: the current of the greatest difference, and that difference by a little
     assert 0.89 < greatest_difference_A(module, sheet.t_hot_C) / sheet.i_max_A < 1.01

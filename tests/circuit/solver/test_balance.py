@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tests.circuit.solver.watching import watch
-from tests.peltier import heat_rejected_W
+from tests.peltier import heat_absorbed_W, heat_rejected_W
 from thermicon.circuit import Drive, Rig, simulate_current
 from thermicon.circuit.solver.network import COLD, HOT, SKIN, network_of
 
@@ -37,7 +37,7 @@ def energies(drive: Drive, rig: Rig, rate_Hz: float, begin: int = 0) -> dict[str
         "surface": area * (flow[1:] + flow[:-1]) / 2 * step,
         "deep": network.conductance_W_per_K[-1] * (mean[-2] - blood) * step,
         "perfusion": network.perfusion_W_per_K @ (blood - mean[SKIN:-1]) * step,
-        "absorbed": (module.heat_absorbed_W(amperes, mean[COLD], mean[HOT]) - joule / 2) * step,
+        "absorbed": (heat_absorbed_W(module, amperes, mean[COLD], mean[HOT]) - joule / 2) * step,
         "rejected": (heat_rejected_W(module, amperes, mean[COLD], mean[HOT]) + joule / 2) * step,
         "electrical": (module.voltage_V(amperes, mean[COLD], mean[HOT]) * amperes + joule) * step,
         "sink": (mean[HOT] - rig.heat_sink.temperature_C) / rig.heat_sink.resistance_K_per_W * step,
@@ -83,7 +83,7 @@ def test_electrical_power_is_heat_rejected_less_heat_absorbed_in_every_row(rig: 
     plates = trace.current_A, trace.display_C, trace.hot_plate_C
     power = trace.voltage_V * trace.current_A
     assert np.ptp(power) > 3.0
-    assert heat_rejected_W(module, *plates) - module.heat_absorbed_W(*plates) == pytest.approx(power, abs=1e-12)
+    assert heat_rejected_W(module, *plates) - heat_absorbed_W(module, *plates) == pytest.approx(power, abs=1e-12)
 
 
 RATES_HZ = (100, 200, 400)

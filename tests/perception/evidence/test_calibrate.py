@@ -2,8 +2,8 @@ from dataclasses import replace
 
 import pytest
 
-from thermicon.circuit.records import Record, RecordError, RecordTable, load_records
-from thermicon.perception.evidence.calibrate import calibrate, to_toml
+from thermicon.circuit.records import Record, RecordError, RecordTable, dump_records, load_records
+from thermicon.perception.evidence.calibrate import COMMENT, calibrate
 from thermicon.perception.evidence.results import load_constants
 from thermicon.perception.observer.channels import VARIABLES, source_of
 from thermicon.perception.observer.draws import PosteriorDraws
@@ -14,7 +14,7 @@ AGAIN = "the observer is out of date: run python -m thermicon.perception.evidenc
 
 
 def test_the_shipped_observer_is_what_calibrate_finds() -> None:
-    assert to_toml(calibrate()) == SHIPPED.read_text(encoding="utf-8"), AGAIN
+    assert dump_records(calibrate(), comment=COMMENT) == SHIPPED.read_text(encoding="utf-8"), AGAIN
 
 
 def test_predicted_records_and_references_do_not_reach_the_observer() -> None:
@@ -30,7 +30,7 @@ def test_predicted_records_and_references_do_not_reach_the_observer() -> None:
     ]
     for other in others:
         assert other != table
-        assert to_toml(calibrate(other)) == SHIPPED.read_text(encoding="utf-8"), AGAIN
+        assert dump_records(calibrate(other), comment=COMMENT) == SHIPPED.read_text(encoding="utf-8"), AGAIN
 
 
 def test_every_number_of_the_observer_says_where_it_is_from() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from tests.builders import dprime_from_memory
+from tests.builders import dprime_from_memory, population_dprime
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.solver.simulate import simulate_all
 from thermicon.icons import IconSet, load_library, read_cue
@@ -24,7 +24,6 @@ from thermicon.perception.identification.episodes import EpisodesError
 from thermicon.perception.identification.map import stress
 from thermicon.perception.observer.observer import DATA
 from thermicon.perception.observer.people import draw_people
-from thermicon.perception.selection.appraise import population_dprime
 from thermicon.perception.selection.pool import Pool
 
 CUES, RIG = DATA / "short-pulses.cue", "tcs2"
@@ -54,7 +53,7 @@ def excess(apart: Array) -> float:
 )
 def test_memory_keeps_distances(icons: IconSet, rig: str, bent: float) -> None:
     """No cost is so high that d′ are no distances any more, which points in space would have to bend."""
-    apart, _ = population_dprime(list(icons), Rig.load(rig), draw_people(8, 3))
+    apart = population_dprime(list(icons), Rig.load(rig), draw_people(8, 3))
     assert excess(apart) < 0.3
     assert stress(apart, embed(apart)).max() < bent
 
@@ -79,7 +78,7 @@ def test_trains_of_any_length_differ(rig: str) -> None:
         for n in range(7, 21)
     )
     icons = parse(HEAD.replace("skin", "display") + trains)
-    apart, _ = population_dprime(list(icons), Rig.load(rig), draw_people(24, 11))
+    apart = population_dprime(list(icons), Rig.load(rig), draw_people(24, 11))
     assert np.median(apart, axis=0)[~np.eye(len(trains.splitlines()), dtype=bool)].min() > 0.5
 
 

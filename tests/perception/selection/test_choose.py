@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.builders import messages
+from tests.builders import messages, population_dprime
 from thermicon.circuit import InputError, Rig
 from thermicon.circuit.solver.simulate import duration_s, simulate_all
 from thermicon.icons import Icon, IconSet, parse
 from thermicon.perception import choose, draw_people, rank
-from thermicon.perception.selection.appraise import appraise, population_dprime
+from thermicon.perception.selection.appraise import appraise
 from thermicon.perception.selection.request import Selection
 
 HEAD = 'cue 1\nset pool "Pool" { site thenar; control display; baseline 32 °C }\n'
@@ -61,7 +61,7 @@ def pool() -> Pool:
 
 def test_the_worst_pair_is_that_of_the_best_choice(pool: Pool, rig: Rig) -> None:
     found = pool.choose(3)
-    middle = np.median(population_dprime(pool.icons, rig, CROWD)[0], axis=0)
+    middle = np.median(population_dprime(pool.icons, rig, CROWD), axis=0)
     values = {c: sorted(middle[a, b] for a, b in combinations(c, 2)) for c in combinations(range(5), 3)}
     best = max(values, key=lambda c: values[c])  # among equal ones that with the farther next nearest pair
     assert found.icons == tuple(pool.icons[k].name for k in best)

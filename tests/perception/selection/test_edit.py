@@ -4,7 +4,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.builders import steps
+from tests.builders import population_dprime, steps
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.circuit.solver.simulate import duration_s
@@ -12,7 +12,6 @@ from thermicon.icons import Icon, IconSet, parse
 from thermicon.perception import cheapest_edit, draw_people, rank
 from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
 from thermicon.perception.selection import candidate_edits
-from thermicon.perception.selection.appraise import population_dprime
 from thermicon.perception.selection.candidate_edits import numbers_of, repeated, with_number, worse
 from thermicon.perception.selection.edit import Edit, NoEdit
 
@@ -43,8 +42,8 @@ def test_it_parts_the_pair_for_people_and_harms_no_other(six: IconSet, found: Ed
     crowd = draw_people(PEOPLE, 0)
     names = [icon.name for icon in six]
     i, j, edited = names.index("warming-step"), names.index("linear-warming"), names.index(found.icon)
-    before = np.median(population_dprime(list(six), rig, crowd)[0], axis=0)
-    after = np.median(population_dprime(changed(six, found), rig, crowd)[0], axis=0)
+    before = np.median(population_dprime(list(six), rig, crowd), axis=0)
+    after = np.median(population_dprime(changed(six, found), rig, crowd), axis=0)
     assert before[i, j] < WANTED <= after[i, j]
     assert found.d_prime == pytest.approx(after[i, j], abs=0.01)
     for k in set(range(6)) - {i, j}:
