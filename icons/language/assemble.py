@@ -137,22 +137,19 @@ class _Assembler:
                 line, _ = self.source.place(seen[rule])
                 self.builder.add("E213", span(part), f'"{rule}" is already on line {line}', "keep one of them")
             elif rule != "BROKEN":
-                seen[rule] = span(part)[0]
-                self.setting(rule, part.children[0])
+                seen[rule], value = span(part)[0], part.children[0]
+                if rule == "site":
+                    self.site = str(value)
+                elif rule == "control":
+                    self.control = cast(Control | None, self.builder.choice(value, CONTROLS, "E215", "a control"))
+                else:
+                    level = self.builder.quantity(value)
+                    self.baseline_known = level == level
+                    self.baseline = level if self.baseline_known else None
         if any(getattr(part, "type", "") == "BROKEN" for part in tree.children):
             self.control = self.control if "control" in seen else None
             self.baseline_known = self.baseline_known and "baseline" in seen
         self.metadata = self.builder.metadata(metadata)
-
-    def setting(self, rule: str, value: Any) -> None:
-        if rule == "site":
-            self.site = str(value)
-        elif rule == "control":
-            self.control = cast(Control | None, self.builder.choice(value, CONTROLS, "E215", "a control"))
-        else:
-            level = self.builder.quantity(value)
-            self.baseline_known = level == level
-            self.baseline = level if self.baseline_known else None
 
     def names(self, drafts: list[IconDraft]) -> None:
         first: dict[str, Place] = {}

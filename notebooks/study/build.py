@@ -8,11 +8,14 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.icons import Icon, IconSet
+from thermicon.circuit import Device, Rig
+from thermicon.circuit.delivery.formats import load_format
+from thermicon.circuit.delivery.pack import check_names
+from thermicon.circuit.solver.simulate import duration_s
+from thermicon.icons import Icon, IconSet, read_cue
 from thermicon.icons.model.context import Context, Metadata
 from thermicon.icons.model.statements import Hold, Ramp, Return
 from thermicon.icons.near_words import did_you_mean
@@ -32,9 +35,6 @@ from .study_file import (
     study_text,
 )
 from .timing import Landing, find_gap, find_landing
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Device, Rig
 
 ProgressBar = Callable[[str], AbstractContextManager[Progress | None]]
 
@@ -80,9 +80,6 @@ class Plan:
 
 def read_materials(source: str | Path) -> Materials:
     """Read a study file and what it names, beside it or shipped; every fault is raised before anything is simulated."""
-    from thermicon.circuit import Device
-    from thermicon.icons import read_cue
-
     text = study_text(source)
     study = parse_study(text, str(source))
     folder = Path(source).parent
@@ -94,18 +91,16 @@ def read_materials(source: str | Path) -> Materials:
         icons = read_cue(_beside(stimuli.set or "", folder))
         rig = _rig_of(stimuli, folder, icons.context.site)
     device = Device.load(_beside(stimuli.device, folder))
-    if not stimuli.icons:
-        check_counts(study, len(icons))
     for name in stimuli.icons:
         if icons.find(name) is None:
             known = [icon.name for icon in (icons if len(icons) <= MOST_SUGGESTED else icons.entries)]
             raise StudyError(f"{source}: stimuli.icons: there is no icon {name}; {did_you_mean(name, known)}")
+    check_counts(study, len(stimuli.icons) or len(icons))
     if not stimuli.icons and len(icons) > MOST_ASKED:
         raise StudyError(
             f"{source}: the set has {len(icons):,} icons, and a person can be asked for {MOST_ASKED}; name some"
         )
     chosen = tuple(icons[name] for name in stimuli.icons) if stimuli.icons else tuple(icons)
-    check_counts(study, len(chosen))
     contents = {
         "icons": icons.content_hash,
         "rig": rig.document,
@@ -116,8 +111,6 @@ def read_materials(source: str | Path) -> Materials:
 
 def _rig_of(stimuli: Stimuli, folder: Path, site: str | None) -> Rig:
     """The rig of a study with its changes; unless one is named, the usual one for a site."""
-    from thermicon.circuit import Rig
-
     rig = Rig.of(None if stimuli.rig is None else _beside(stimuli.rig, folder), site)
     return rig.with_set(list(stimuli.rig_changes)) if stimuli.rig_changes else rig
 
@@ -133,10 +126,6 @@ def make_plan(materials: Materials, bar: ProgressBar, say: Callable[[str], None]
 
     `say` is told the plan before the judgement, which takes most of the time.
     """
-    from thermicon.circuit.delivery.formats import load_format
-    from thermicon.circuit.delivery.pack import check_names
-    from thermicon.circuit.solver.simulate import duration_s
-
     study, rig, icons = materials.study, materials.rig, materials.chosen
     form = load_format(study.stimuli.format)
     form.check(materials.device)

@@ -50,9 +50,6 @@ class SetView(LiveView[SetRequest]):
         self.picked: tuple[str, str] | None = None
         self.edit: Edit | NoEdit | None = None
         self.editor, self.chooser = BackgroundWorker(self._no_edit), BackgroundWorker(self._no_choice)
-        self._build()
-
-    def _build(self) -> None:
         self.heat, self.overlay = SideCanvas("heat"), SideCanvas("traces")
         self.heat.on_message(lambda message: self._safely(lambda: self._cell(message)))
         names = ("scores", "status", "choice", "table", "notes", "pair", "edit_text", "why", "map", "caveat")
@@ -117,7 +114,12 @@ class SetView(LiveView[SetRequest]):
         pair = made.pair(a, b)
         self.said["pair"].value, self.said["why"].value = pair_html(pair), shown(Bullets(pair.why))
         self.said["edit_text"].value = edit_html(None)
-        self.editor.ask(lambda job: self._look_for_edit(job, made, a, b), 0.1)
+
+        def look(job: BackgroundJob) -> None:
+            found = cheapest_edit(made.ranking, a, b)
+            job.on_page(lambda: self._offer_edit(found))
+
+        self.editor.ask(look, 0.1)
 
     def apply_edit(self) -> None:
         """Apply the suggested edit to the text, as one step that can be undone."""
@@ -211,10 +213,6 @@ class SetView(LiveView[SetRequest]):
             said["map"].value = picture
         if well or self.picked is None:
             self._safely(lambda: self.pick(*pair))
-
-    def _look_for_edit(self, job: BackgroundJob, made: RankedSet, a: str, b: str) -> None:
-        found = cheapest_edit(made.ranking, a, b)
-        job.on_page(lambda: self._offer_edit(found))
 
     def _no_choice(self, said: str) -> None:
         self._show_choice(fragment("marked", f"no choice: {said}", "th-caution"))

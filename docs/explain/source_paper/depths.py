@@ -56,7 +56,7 @@ def resembles(cue: Icon | Drive, rig: Rig, pad: Pad, *, tail_s: float = 0.0) -> 
     run = probe_depths(cue, rig, depth, tail_s=tail_s)
     read = pad.reads(run.trace, rig)
     change_K, wanted_K = run.temperature_C - run.temperature_C[:, :1], read - read[0]
-    best = Likeness(0.0, np.inf)
+    layers, best = np.cumsum([layer.thickness_m for layer in rig.skin.layers]), Likeness(0.0, np.inf)
     for k in range(len(depth) - 1):
         if depth[k + 1] - depth[k] < 1e-9:
             continue
@@ -65,13 +65,9 @@ def resembles(cue: Icon | Drive, rig: Rig, pad: Pad, *, tail_s: float = 0.0) -> 
         share = 0.0 if square == 0 else min(max(float((wanted_K - change_K[k]) @ step) / square, 0.0), 1.0)
         rms = float(np.sqrt(np.mean((wanted_K - change_K[k] - share * step) ** 2)))
         if rms < best.residual_K:
-            best = Likeness(_depth_at(rig, float(depth[k]), float(depth[k + 1]), share), rms)
+            # The depth at this share of the thermal resistance between the two.
+            edges = [depth[k], *(edge for edge in layers if depth[k] < edge < depth[k + 1]), depth[k + 1]]
+            resistance = [rig.skin.resistance_to_m2K_per_W(float(edge)) for edge in edges]
+            at = resistance[0] + share * (resistance[-1] - resistance[0])
+            best = Likeness(float(np.interp(at, resistance, edges)), rms)
     return best
-
-
-def _depth_at(rig: Rig, high_m: float, low_m: float, share: float) -> float:
-    """Depth in m at a share of the thermal resistance between two depths."""
-    layers = np.cumsum([layer.thickness_m for layer in rig.skin.layers]).tolist()
-    edges = [high_m, *(edge for edge in layers if high_m < edge < low_m), low_m]
-    resistance = [rig.skin.resistance_to_m2K_per_W(edge) for edge in edges]
-    return float(np.interp(resistance[0] + share * (resistance[-1] - resistance[0]), resistance, edges))
