@@ -64,7 +64,8 @@ class Staging:
             self.write(str(here), front + self.filled(self.linked(text, where, here), where))
         for section in sections:
             if section.index not in self.written:
-                text = self.linked(section.page, PurePosixPath("docs/README.md"), PurePosixPath(section.index))
+                text = f"# {section.title}\n\n{section.about}\n\n{section.listing}\n"
+                text = self.linked(text, PurePosixPath("docs/README.md"), PurePosixPath(section.index))
                 self.write(section.index, with_toctree(text, section.index, sections))
         for name, text in more.items():
             self.write(name, text)

@@ -230,7 +230,12 @@ class _Assembler:
         if self.control is None:
             return None
         self.returns(draft.body)
-        self.return_slots(draft)
+        wrong, right = ("rate", "A/s") if self.control == "current" else ("current_rate", "°C/s")
+        for slot in draft.slots:
+            if slot.field == "rate_per_s" and slot.kind == wrong:
+                place = self.builder.places[id(statement_at(cast(Body, draft.body), slot.path))]
+                what = f"{slot.parameter} is not a rate in {right}; this set controls the {self.control}"
+                self.builder.add("E210", place["pace"], what, f"give {slot.parameter} the unit {right}")
         if draft.over is not None:
             return self.family(draft, before)
         for problem in survey(draft.body, self.control, self.rest()).problems:
@@ -302,14 +307,6 @@ class _Assembler:
             elif isinstance(part, Return) and (place := self.builder.places[id(part)].get(wrong)):
                 what, cure = f"this set controls the {self.control}", Patch(*place, f"1 {right}")
                 self.builder.add("E210", place, what, f'a rate in {right}, such as "return at 1 {right}"', cure)
-
-    def return_slots(self, draft: IconDraft) -> None:
-        wrong, right = ("rate", "A/s") if self.control == "current" else ("current_rate", "°C/s")
-        for slot in draft.slots:
-            if slot.field == "rate_per_s" and slot.kind == wrong:
-                place = self.builder.places[id(statement_at(cast(tuple[Statement, ...], draft.body), slot.path))]
-                what = f"{slot.parameter} is not a rate in {right}; this set controls the {self.control}"
-                self.builder.add("E210", place["pace"], what, f"give {slot.parameter} the unit {right}")
 
     def add(self, problem: Problem, draft: IconDraft) -> None:
         # A statement of an icon that is played is reported where that icon stands.

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .style import COOL, GREY, INK, LIMIT, PLACES, WARM, on_one_clock
+from .style import COOL, GREY, INK, LIMIT, PLACES, WARM, new_figure, on_one_clock
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,10 +29,8 @@ def session_figure(session: Session) -> Figure:
     Cooling is blue and points down, warming is orange and points up; lines differ in dashes too, so that the figure
     reads in grey. Returns a matplotlib ``Figure``; nothing is shown.
     """
-    from matplotlib.figure import Figure
-
     plays, trace, minutes = session.plays, session.trace, session.duration_s > 600.0
-    figure = Figure(figsize=(9.0, 5.6 + NAMES_INCHES * (len(plays) <= MOST_NAMED)), layout="constrained")
+    figure = new_figure(9.0, 5.6 + NAMES_INCHES * (len(plays) <= MOST_NAMED))
     axes = figure.subplots(2, 1, sharex=True, height_ratios=[0.9, 2.2])
     scale = 1.0 / 60.0 if minutes else 1.0
     # How far the skin moves either way in each play, from where it was when the play began.

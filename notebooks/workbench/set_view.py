@@ -10,11 +10,13 @@ import ipywidgets as widgets
 from thermicon.circuit import Rig
 from thermicon.perception import Goal, Ranking, cheapest_edit
 from thermicon.perception.identification.map import PerceptualMap
+from thermicon.perception.plots.draw_map import plot_map
 from thermicon.perception.selection.edit import Edit, NoEdit
 
 from ..editing.cue_check import read_text
 from ..editing.number_literals import with_edit
 from ..figures.print_figure import themed_svg
+from ..figures.style import new_figure
 from ..report.blocks import Bullets, fragment, shown
 from ..report.rank_report import rank_report
 from ..report.set_report import SetReport
@@ -249,13 +251,9 @@ class SetView(LiveView[SetRequest]):
 
 def map_html(found: PerceptualMap) -> str:
     """The perceptual map with its caption; takes a fifth of a second, so that it is drawn in the background."""
-    from matplotlib.figure import Figure
-
-    from thermicon.perception.plots.draw_map import plot_map
-
     spread = f"; each ellipse holds half of {found.people} people" if found.covariance is not None else ""
     note = fragment("block", f"distances are d′, stress {found.stress:.2f}{spread}", "th-soft")
-    figure = Figure(figsize=MAP_INCHES, layout="constrained")
+    figure = new_figure(*MAP_INCHES)
     plot_map(found, figure.add_subplot()).set_title("", loc="left")
     return f"{fragment('block', 'perceptual map', 'th-head')}{note}{themed_svg(figure)}"
 
