@@ -27,7 +27,7 @@ class OutputError(Exception):
 
 
 @contextmanager
-def complete_or_absent(path: Path, mode: int = 0o666) -> Iterator[Path]:
+def complete_or_absent(path: Path) -> Iterator[Path]:
     """A temporary name beside ``path``, whose place it takes when the block succeeds; OutputError where it cannot."""
     goal = path.resolve()
     if goal.exists() and not goal.is_file():
@@ -35,7 +35,7 @@ def complete_or_absent(path: Path, mode: int = 0o666) -> Iterator[Path]:
         return
     draft = goal.with_name(f".{goal.stem[:LONGEST_STEM]}.{secrets.token_hex(4)}.{MARK}{goal.suffix.lower()}")
     try:
-        draft.touch(mode, exist_ok=False)
+        draft.touch(exist_ok=False)
         try:
             yield draft
             draft.replace(goal)

@@ -198,7 +198,12 @@ def load_observer(file: Path | None, rig: Rig | None = None, needs_draws: str = 
     with noted("warning"):
         model = ObserverModel.load(file)
     if model.posterior is None:
-        cure = _cure_without_draws(file)
+        beside, cure = (
+            file and file.with_suffix(".csv"),
+            "give the table of draws (.csv) that pilot --keep writes beside it",
+        )
+        if beside and beside.exists():
+            cure = f"give {beside}, which stands beside it"
         if needs_draws:
             fail(f"{model.name}: {needs_draws}, which this observer does not have: {cure}")
         note(f"note: {model.name} has no posterior draws, so that there are no intervals for a new laboratory: {cure}")
@@ -209,14 +214,6 @@ def load_observer(file: Path | None, rig: Rig | None = None, needs_draws: str = 
     ):
         note(f"warning: {model.name} was conditioned on the {held} rig, not on {now}: its answers say less of this one")
     return model
-
-
-def _cure_without_draws(file: Path | None) -> str:
-    """Which file of draws to give instead: the one beside the records, where `pilot --keep` has written one."""
-    beside = None if file is None else file.with_suffix(".csv")
-    if beside is not None and beside.exists():
-        return f"give {beside}, which stands beside it"
-    return "give the table of draws (.csv) that pilot --keep writes beside it"
 
 
 def check_draws(model: ObserverModel, asked: int | None, option: str, usual: int, least: int = 2) -> int:
@@ -230,10 +227,9 @@ def check_draws(model: ObserverModel, asked: int | None, option: str, usual: int
         if 0 < (draws := model.most_draws(usual)) < usual:
             note(f"note: {model.name} has {draws} draws: all of them are used ({option} is {usual} by default)")
         return draws
-    draws = asked
-    if model.posterior is not None and draws > len(model.posterior):
-        fail(f"{option} {draws}: the {model.name} posterior has {len(model.posterior)} draws: ask for as many or fewer")
-    return draws
+    if model.posterior is not None and asked > len(model.posterior):
+        fail(f"{option} {asked}: the {model.name} posterior has {len(model.posterior)} draws: ask for as many or fewer")
+    return asked
 
 
 @contextlib.contextmanager

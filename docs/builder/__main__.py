@@ -16,7 +16,7 @@ from typing import cast
 
 from command_options import command_options
 from data_tables import DATA_TABLES
-from gallery import Gallery
+from gallery import gallery
 from key_tables import KEY_TABLES
 from moving_percept import moving_percept
 from paper_figures import circuit_diagram, paper_figures
@@ -38,13 +38,12 @@ def build(folder: Path, *, execute: bool) -> int:
     gallery_digest = hashlib.sha256(code.encode() + Path(__file__).with_name("gallery.py").read_bytes()).hexdigest()
     kept = folder / "predicted" / gallery_digest[:16] if execute else None
     site = Staging(folder / "source", {}, kept)
-    gallery = Gallery(kept, site.write)
     site.slots.update(POSTERIOR_TABLES | KEY_TABLES | DATA_TABLES)
     site.slots.update(
         {
             "options of commands": command_options,
             "python names": python_index,
-            "gallery": gallery.markdown,
+            "gallery": lambda: gallery(kept, site.write),
             "paper figures": lambda: paper_figures(site.write),
             "circuit diagram": lambda: circuit_diagram(site.write),
             "moving percept": lambda: moving_percept(site.write),

@@ -24,38 +24,34 @@ MOST_ICONS, SAMPLED = 12, 6
 DPI = 110
 
 
-class Gallery:
-    """Markdown and pictures of the shipped sets; predictions are kept in a folder, or left out where there is none."""
+Write = Callable[[str, bytes], None]
 
-    def __init__(self, kept: Path | None, write: Callable[[str, bytes], None]) -> None:
-        self.kept, self.write = kept, write
 
-    def markdown(self) -> str:
-        """Return the sets one after the other, and write their pictures."""
-        shipped = library()
-        return "\n".join("\n".join(self._set(entry, shipped[entry.name])) for entry in shipped.entries)
+def gallery(kept: Path | None, write: Write) -> str:
+    """The shipped sets as Markdown, and their pictures; predictions are kept in a folder, or left out without one."""
+    shipped = library()
+    return "\n".join("\n".join(_set(entry, shipped[entry.name], kept, write)) for entry in shipped.entries)
 
-    def _set(self, entry: Any, icons: IconSet) -> Iterator[str]:
-        yield f"## {entry.name}\n\n{icons.title}. {entry.icons} icon{'s' * (entry.icons != 1)}; {entry.source}.\n"
-        self.write(f"gallery/{entry.name}.png", png(icons.plot().figure))
-        yield f"![Courses of the icons of {entry.name}](gallery/{entry.name}.png)\n"
-        if self.kept is not None and entry.icons > 1:
-            yield from self._predicted(entry.name, icons, self.kept / entry.name)
-        yield f":::{{dropdown}} Cue text of {entry.name}\n:icon: code\n:open:\n"
-        text = (files("thermicon.icons") / "library" / f"{entry.name}.cue").read_text(encoding="utf-8")
-        yield f"```cue\n{text}```\n:::\n"
 
-    def _predicted(self, name: str, icons: IconSet, kept: Path) -> Iterator[str]:
-        if not (kept / "confusions.png").is_file():
-            _predict(icons, kept)
-        said = json.loads((kept / "said.json").read_text(encoding="utf-8"))
-        self.write(f"gallery/{name}-confusions.png", (kept / "confusions.png").read_bytes())
+def _set(entry: Any, icons: IconSet, kept: Path | None, write: Write) -> Iterator[str]:
+    yield f"## {entry.name}\n\n{icons.title}. {entry.icons} icon{'s' * (entry.icons != 1)}; {entry.source}.\n"
+    write(f"gallery/{entry.name}.png", png(icons.plot().figure))
+    yield f"![Courses of the icons of {entry.name}](gallery/{entry.name}.png)\n"
+    if kept is not None and entry.icons > 1:
+        own = kept / entry.name
+        if not (own / "confusions.png").is_file():
+            _predict(icons, own)
+        said = json.loads((own / "said.json").read_text(encoding="utf-8"))
+        write(f"gallery/{entry.name}-confusions.png", (own / "confusions.png").read_bytes())
         yield f"{said['which']}: {said['correct'] * 100:.0f} % correct, {said['bits']:.2f} bits, predicted for {PEOPLE}"
         yield f"virtual people on the rig `{RIG}`.\n"
-        yield f"![Predicted confusions of {name}](gallery/{name}-confusions.png)\n"
+        yield f"![Predicted confusions of {entry.name}](gallery/{entry.name}-confusions.png)\n"
         yield "| icon | means | correct | most confused with |\n|---|---|---|---|"
         yield from said["rows"]
         yield ""
+    yield f":::{{dropdown}} Cue text of {entry.name}\n:icon: code\n:open:\n"
+    text = (files("thermicon.icons") / "library" / f"{entry.name}.cue").read_text(encoding="utf-8")
+    yield f"```cue\n{text}```\n:::\n"
 
 
 def _predict(icons: IconSet, kept: Path) -> None:

@@ -28,15 +28,12 @@ def page_picture(mark: re.Match[str], page: str, kept: Path) -> Path:
     path = kept / f"{hashlib.sha256(asked.encode()).hexdigest()[:12]}.png"
     if not path.is_file():
         kept.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(_drawn(command_lines(mark), saved))
+        with TemporaryDirectory() as name, chdir(name):
+            for file, text in saved.items():
+                Path(file).write_text(text, encoding="utf-8")
+            for line in command_lines(mark):
+                if (result := CliRunner().invoke(app, shlex.split(line))).exit_code:
+                    raise RuntimeError(f"thermicon {line}: {result.output}{result.exception}")
+            drawn = Path("picture.png").read_bytes()
+        path.write_bytes(drawn)
     return path
-
-
-def _drawn(lines: list[str], saved: dict[str, str]) -> bytes:
-    with TemporaryDirectory() as name, chdir(name):
-        for file, text in saved.items():
-            Path(file).write_text(text, encoding="utf-8")
-        for line in lines:
-            if (result := CliRunner().invoke(app, shlex.split(line))).exit_code:
-                raise RuntimeError(f"thermicon {line}: {result.output}{result.exception}")
-        return Path("picture.png").read_bytes()

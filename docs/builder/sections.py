@@ -56,11 +56,6 @@ class Section:
         """Pages of the section, from docs/, in their order."""
         return re.findall(r"^- \[[^]]+\]\(([^)#]+)\)", self.listing, flags=re.MULTILINE)
 
-    @property
-    def page(self) -> str:
-        """The section's first page as Markdown, where the repository has none."""
-        return f"# {self.title}\n\n{self.about}\n\n{self.listing}\n"
-
 
 def read_sections(text: str) -> list[Section]:
     """Return the sections of the index in their order.

@@ -64,7 +64,8 @@ class Staging:
             self.write(str(here), front + self.filled(self.linked(text, where, here), where))
         for section in sections:
             if section.index not in self.written:
-                text = self.linked(section.page, PurePosixPath("docs/README.md"), PurePosixPath(section.index))
+                text = f"# {section.title}\n\n{section.about}\n\n{section.listing}\n"
+                text = self.linked(text, PurePosixPath("docs/README.md"), PurePosixPath(section.index))
                 self.write(section.index, with_toctree(text, section.index, sections))
         for name, text in more.items():
             self.write(name, text)
@@ -102,7 +103,12 @@ class Staging:
         """Return a page of the repository with links as they are on the site, and with blocks in colour."""
         parts, end = [], 0
         for fence in FENCE.finditer(text):
-            parts += [self._links(text[end : fence.start()], where, here), _coloured(fence)]
+            block, kind = fence[0], fence["kind"]
+            if kind in NO_LEXER:
+                block = block.replace(f"```{kind}", "```text", 1)
+            elif not kind.startswith("{") and kind != "math":
+                get_lexer_by_name(kind)
+            parts += [self._links(text[end : fence.start()], where, here), block]
             end = fence.end()
         return "".join([*parts, self._links(text[end:], where, here)])
 
@@ -118,15 +124,6 @@ class Staging:
             return f"{link['before']}{nearer}{link['anchor'] or ''}"
 
         return LINK.sub(replaced, prose)
-
-
-def _coloured(fence: re.Match[str]) -> str:
-    """A block of code with its language: cue text and a block without a language are plain text."""
-    if (kind := fence["kind"]) in NO_LEXER:
-        return fence[0].replace(f"```{kind}", "```text", 1)
-    if not kind.startswith("{") and kind != "math":
-        get_lexer_by_name(kind)
-    return fence[0]
 
 
 def pages() -> list[Path]:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cache
+from textwrap import indent
 
 from ..language.parse import parse
 from ..model.errors import CueErrors, codes
@@ -50,11 +51,7 @@ def explain(code: str) -> str:
     if entry.cure:
         parts.append(entry.cure)
     if entry.wrong:
-        parts += [f"Wrong:\n\n{_indented(entry.wrong)}", f"What is said:\n\n{_indented(entry.message())}"]
+        parts += ["Wrong:", indent(entry.wrong.strip("\n"), "  "), "What is said:", indent(entry.message(), "  ")]
     if entry.right:
-        parts.append(f"Right:\n\n{_indented(entry.right)}")
+        parts += ["Right:", indent(entry.right.strip("\n"), "  ")]
     return "\n\n".join(parts)
-
-
-def _indented(text: str) -> str:
-    return "\n".join(f"  {line}".rstrip() for line in text.strip("\n").split("\n"))

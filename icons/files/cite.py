@@ -41,9 +41,12 @@ def methods(icons: IconSet, rig_about: str | None = None, people: str = "") -> s
     title = f" of the set “{icons.title}”" if icons.title else ""
     count = counted(len(icons), "thermal icon")
     site = f" at the site “{icons.context.site}”" if icons.context.site else ""
+    if (level := icons.context.baseline_C) is not None:
+        site += ", on a display that rests at" if control == "current" else ", from"
+        site += f" a baseline of {quantity(level, 'absolute')}"
     said = [
         f"{count[:1].upper()}{count[1:]}{title} {'were' if many else 'was'} used.",
-        f"{'They prescribe' if many else 'It prescribes'} {_PRESCRIBED[control]}{site}{_baseline(icons)}.",
+        f"{'They prescribe' if many else 'It prescribes'} {_PRESCRIBED[control]}{site}.",
         f"{'They last' if many else 'It lasts'} {_lengths(icons)}.",
         f"{'Their courses' if many else 'Its course'}, from baseline: {'; '.join(map(_course, icons.entries))}.",
     ]
@@ -78,14 +81,12 @@ def bibtex(icons: IconSet) -> str:
         for doi, by in dois.items()
         if doi.lower() not in known
     ]
-    return "\n\n".join(map(_entry, entries))
-
-
-def _entry(each: Reference) -> str:
-    fields = {name: text for name, text in each.items() if name not in ("type", "key", "seen", "unverified") and text}
-    lines = [f"  {name} = {{{text}}},\n" for name, text in fields.items()]
-    doubt = f"% to be checked: {each['unverified']}\n" if "unverified" in each else ""
-    return f"{doubt}@{each['type']}{{{each['key']},\n{''.join(lines)}}}"
+    blocks, about = [], ("type", "key", "seen", "unverified")
+    for each in entries:
+        lines = [f"  {name} = {{{text}}},\n" for name, text in each.items() if name not in about and text]
+        doubt = f"% to be checked: {each['unverified']}\n" if "unverified" in each else ""
+        blocks.append(f"{doubt}@{each['type']}{{{each['key']},\n{''.join(lines)}}}")
+    return "\n\n".join(blocks)
 
 
 def counted(count: int, noun: str) -> str:
@@ -111,14 +112,6 @@ def _course(entry: Icon | Family) -> str:
     words = ", ".join(" ".join(line.split()) for text in lines for line in text.split("\n"))
     words = words.replace("{,", "{").replace(", }", " }")
     return _MINUS.sub("−", f"{head}: {words}")
-
-
-def _baseline(icons: IconSet) -> str:
-    level = icons.context.baseline_C
-    if level is None:
-        return ""
-    rest = f"a baseline of {quantity(level, 'absolute')}"
-    return f", on a display that rests at {rest}" if icons.context.control == "current" else f", from {rest}"
 
 
 def _lengths(icons: IconSet) -> str:

@@ -10,7 +10,7 @@ from ..model.family import Family
 from ..model.format import Holes
 from ..model.icon import Icon
 from ..model.iconset import IconSet
-from ..model.parameter import Parameter, Path
+from ..model.parameter import Path
 from ..model.statements import Play, Repeat, Return, Statement
 
 _SAME_AS_LEFT_OUT = {"direction": "change", "cut": False}
@@ -54,7 +54,11 @@ def _icon(entry: Icon | Family) -> dict[str, Any]:
         return _given({**head, "statements": [_statement(part, {}, entry) for part in entry.statements]})
     holes = {(slot.path, slot.field): slot.parameter for slot in entry.slots}
     body = [_statement(part, holes, entry, (n,)) for n, part in enumerate(entry.template)]
-    return _given({**head, "parameters": [_parameter(each) for each in entry.parameters], "statements": body})
+    parameters = []
+    for own in entry.parameters:
+        values = dict(zip(("low", "high", "step"), own.span or (), strict=False)) or {"values": list(own.listed)}
+        parameters.append(_given({"name": own.name, "unit": own.unit or None, **values}))
+    return _given({**head, "parameters": parameters, "statements": body})
 
 
 def _statement(part: Statement, holes: Holes, owner: Icon | Family, path: Path = ()) -> dict[str, Any]:
@@ -76,13 +80,6 @@ def _statement(part: Statement, holes: Holes, owner: Icon | Family, path: Path =
         kind = values.pop("shape")
     kind = {"current": "drive"}.get(kind, kind)
     return {"do": kind, **{name: value for name, value in values.items() if _SAME_AS_LEFT_OUT.get(name) != value}}
-
-
-def _parameter(parameter: Parameter) -> dict[str, Any]:
-    head = {"name": parameter.name, "unit": parameter.unit or None}
-    if parameter.span is None:
-        return _given({**head, "values": list(parameter.listed)})
-    return _given({**head, **dict(zip(("low", "high", "step"), parameter.span, strict=True))})
 
 
 def _metadata(metadata: Metadata) -> dict[str, Any]:

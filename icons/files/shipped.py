@@ -5,7 +5,6 @@ import stat
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib import resources
-from importlib.resources.abc import Traversable
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -23,6 +22,7 @@ from ..near_words import nearest_words
 if TYPE_CHECKING:
     import pandas as pd
 
+FOLDER = resources.files("thermicon.icons").joinpath("library")
 MOST_LOOKED_AT = 1000
 """Files of a folder among which a similar name is looked for."""
 FileKind = Literal["folder", "device", "pipe", "socket"]
@@ -162,9 +162,7 @@ def library() -> Library:
 
 def library_names() -> tuple[str, ...]:
     """Return the names of the shipped sets, which ``load_library`` and ``read_cue`` accept, sorted."""
-    return tuple(
-        sorted(entry.name.removesuffix(".cue") for entry in _folder().iterdir() if entry.name.endswith(".cue"))
-    )
+    return tuple(sorted(entry.name.removesuffix(".cue") for entry in FOLDER.iterdir() if entry.name.endswith(".cue")))
 
 
 def beside(path: str | Path, ending: str = "") -> str:
@@ -213,7 +211,7 @@ def load_library(name: str) -> IconSet:
         raise whole_file(
             "E001", name if name.isprintable() else repr(name), "neither a file nor a shipped set has this name", help
         )
-    return parse(_folder().joinpath(f"{name}.cue").read_bytes(), f"{name}.cue")
+    return parse(FOLDER.joinpath(f"{name}.cue").read_bytes(), f"{name}.cue")
 
 
 Icons = IconSet | Icon | Family | Iterable[Icon | Family] | str | Path
@@ -281,7 +279,3 @@ def file_bytes(source: str | Path) -> bytes | None:
     if "\0" in name or (name in library_names() and path.is_dir()):
         return None
     return bytes_of(path, "set", ".cue", MOST_BYTES, f"a cue file has at most {MOST_BYTES:,} bytes; split the set")
-
-
-def _folder() -> Traversable:
-    return resources.files("thermicon.icons").joinpath("library")

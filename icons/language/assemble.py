@@ -137,22 +137,19 @@ class _Assembler:
                 line, _ = self.source.place(seen[rule])
                 self.builder.add("E213", span(part), f'"{rule}" is already on line {line}', "keep one of them")
             elif rule != "BROKEN":
-                seen[rule] = span(part)[0]
-                self.setting(rule, part.children[0])
+                seen[rule], value = span(part)[0], part.children[0]
+                if rule == "site":
+                    self.site = str(value)
+                elif rule == "control":
+                    self.control = cast(Control | None, self.builder.choice(value, CONTROLS, "E215", "a control"))
+                else:
+                    level = self.builder.quantity(value)
+                    self.baseline_known = level == level
+                    self.baseline = level if self.baseline_known else None
         if any(getattr(part, "type", "") == "BROKEN" for part in tree.children):
             self.control = self.control if "control" in seen else None
             self.baseline_known = self.baseline_known and "baseline" in seen
         self.metadata = self.builder.metadata(metadata)
-
-    def setting(self, rule: str, value: Any) -> None:
-        if rule == "site":
-            self.site = str(value)
-        elif rule == "control":
-            self.control = cast(Control | None, self.builder.choice(value, CONTROLS, "E215", "a control"))
-        else:
-            level = self.builder.quantity(value)
-            self.baseline_known = level == level
-            self.baseline = level if self.baseline_known else None
 
     def names(self, drafts: list[IconDraft]) -> None:
         first: dict[str, Place] = {}
@@ -233,7 +230,12 @@ class _Assembler:
         if self.control is None:
             return None
         self.returns(draft.body)
-        self.return_slots(draft)
+        wrong, right = ("rate", "A/s") if self.control == "current" else ("current_rate", "°C/s")
+        for slot in draft.slots:
+            if slot.field == "rate_per_s" and slot.kind == wrong:
+                place = self.builder.places[id(statement_at(cast(Body, draft.body), slot.path))]
+                what = f"{slot.parameter} is not a rate in {right}; this set controls the {self.control}"
+                self.builder.add("E210", place["pace"], what, f"give {slot.parameter} the unit {right}")
         if draft.over is not None:
             return self.family(draft, before)
         for problem in survey(draft.body, self.control, self.rest()).problems:
@@ -305,14 +307,6 @@ class _Assembler:
             elif isinstance(part, Return) and (place := self.builder.places[id(part)].get(wrong)):
                 what, cure = f"this set controls the {self.control}", Patch(*place, f"1 {right}")
                 self.builder.add("E210", place, what, f'a rate in {right}, such as "return at 1 {right}"', cure)
-
-    def return_slots(self, draft: IconDraft) -> None:
-        wrong, right = ("rate", "A/s") if self.control == "current" else ("current_rate", "°C/s")
-        for slot in draft.slots:
-            if slot.field == "rate_per_s" and slot.kind == wrong:
-                place = self.builder.places[id(statement_at(cast(tuple[Statement, ...], draft.body), slot.path))]
-                what = f"{slot.parameter} is not a rate in {right}; this set controls the {self.control}"
-                self.builder.add("E210", place["pace"], what, f"give {slot.parameter} the unit {right}")
 
     def add(self, problem: Problem, draft: IconDraft) -> None:
         # A statement of an icon that is played is reported where that icon stands.

@@ -22,20 +22,15 @@ _NAME_HELP = "a name has letters, digits and hyphens and begins with a letter, s
 def diagnose(case: FailedStatement) -> Finding:
     """Return the finding for a statement that stopped making sense."""
     for rule in _RULES:
-        finding = rule(case)
-        if finding is not None:
-            return _lacking(case, finding)
+        if (finding := rule(case)) is None:
+            continue
+        words = [piece.text.casefold() for piece in case.pieces[case.index :] if piece.text not in (case.names or ())]
+        said = next((LACKING[word] for word in words if word in LACKING), finding.help)
+        if case.where not in ("icon", "repeat") or said == finding.help or finding.code == "E105":
+            return finding
+        return replace(finding, help=said, cures=())  # a word has no counterpart in the language
     what = f'"{short(case.bad.text)}" does not fit here' if case.bad.text else "something is missing here"
     return at(case.bad, "E101", what, _examples(case.where))
-
-
-def _lacking(case: FailedStatement, finding: Finding) -> Finding:
-    """Return a finding, without a corrected line where a word has no counterpart in the language."""
-    words = [piece.text.casefold() for piece in case.pieces[case.index :] if piece.text not in (case.names or ())]
-    said = next((LACKING[word] for word in words if word in LACKING), finding.help)
-    if case.where not in ("icon", "repeat") or said == finding.help or finding.code == "E105":
-        return finding
-    return replace(finding, help=said, cures=())
 
 
 def not_yet(case: FailedStatement) -> Finding | None:

@@ -49,25 +49,16 @@ def notation(case: FailedStatement) -> Finding | None:
     if sign == ":":
         what, help = "there is no clock notation", 'a time is one number with its unit, such as "90 s"'
     cures: tuple[Patch, ...] = ()
-    if sign == "/" and (value := _fraction(pieces)):
-        cures = (Patch(pieces[0].start, pieces[2].end, value),)
+    over, under = pieces[0].text, pieces[-1].text
+    if sign == "/" and len(pieces) == 3 and over.isdecimal() and under.isdecimal() and len(over + under) < 10:
+        plain = decimal_text(int(over) / int(under)) if int(under) else ""
+        if plain and Fraction(plain) == Fraction(int(over), int(under)):
+            cures = (Patch(pieces[0].start, pieces[2].end, plain),)
     return Finding("E106", pieces[0].start, pieces[-1].end, f'"{short(text)}" is not a number: {what}', help, cures)
 
 
 def _operand(piece: Piece, names: Container[str]) -> bool:
     return piece.kind == "number" or piece.text in names or piece.text == "("
-
-
-def _fraction(pieces: list[Piece]) -> str | None:
-    """Return a fraction of two whole numbers as a decimal number, where that is exact."""
-    if len(pieces) < 3:  # nothing stands behind the stroke
-        return None
-    over, under = pieces[0].text, pieces[2].text
-    if not (over.isdecimal() and under.isdecimal() and len(over + under) < 10 and int(under)):
-        return None
-    value = Fraction(int(over), int(under))
-    text = decimal_text(float(value))
-    return text if Fraction(text) == value else None
 
 
 def unit(case: FailedStatement) -> Finding | None:

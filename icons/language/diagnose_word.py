@@ -98,19 +98,15 @@ def extra(case: FailedStatement) -> Finding | None:
         help = 'either "at" a rate or "over" a time: one follows from the other'
     # A suggestion leaves nothing out that was meant.
     rest = case.pieces[case.index :]
-    kept = twice and len(rest) == 3 and _one_pace(case)
+    kept = False
+    if twice and len(rest) == 3:  # rate and time may say the same: 6 °C at 3 °C/s over 2 s
+        by, pace, over = (case.quantity((case.find(word) or 0) + 1) for word in ("by", "at", "over"))
+        if by and pace and over and f"{by[1]}/{over[1]}" == pace[1]:
+            kept = math.isclose(abs(by[0]), pace[0] * over[0])
     cures = (Patch(before.end, case.pieces[-1].end, ""),) if kept or case.idle(rest) else ()
     if bad.text == "for" and case.first in ("cool", "warm", "change", "to", "return"):
         cures = (Patch(before.end, bad.start, "; hold "),)
     return at(bad, "E108", f'the statement is complete before "{short(bad.text)}"', help, *cures)
-
-
-def _one_pace(case: FailedStatement) -> bool:
-    """Tell whether rate and time of a change say the same: 6 °C at 3 °C/s over 2 s."""
-    by, pace, over = (case.quantity((case.find(word) or 0) + 1) for word in ("by", "at", "over"))
-    if by is None or pace is None or over is None or f"{by[1]}/{over[1]}" != pace[1]:
-        return False
-    return math.isclose(abs(by[0]), pace[0] * over[0])
 
 
 def _behind_play(case: FailedStatement) -> Finding | None:

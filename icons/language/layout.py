@@ -88,7 +88,6 @@ class _Layout:
         self.opened = self.ended = False
 
     def take(self, kind: str, word: str) -> None:
-        """Take the next item."""
         if self.words and self.words[0][0] in ("ICON", "SET") and kind != "LBRACE":
             if kind == "COMMENT":
                 self.notes.append(word)
@@ -119,7 +118,6 @@ class _Layout:
         self.fresh = kind == "_NEWLINE"
 
     def finish(self) -> None:
-        """Write the statement that was taken, if there is one."""
         if self.words:
             self.put(_joined(self.words))
             self.words = []

@@ -216,12 +216,10 @@ class _Reader:
             self.feed("LBRACE", at=at)
             self.jump(at)
             return
-        if (
-            not header
-            and not self.listing
-            and self.takes("_NEWLINE")
-            and (closed or not self.spoilt(code, pieces, word, where))
-        ):
+        # Complete, but something else was meant: kept, it would draw further errors.
+        first = pieces[0].text if pieces else ""
+        spoilt = code == "E104" or (first in ("play", "step", "total") and word not in VOCABULARY[where])
+        if not header and not self.listing and self.takes("_NEWLINE") and (closed or not spoilt):
             # The statement is complete: keep it, and read what follows as if it stood on a line of its own.
             begin = self.begin
             self.feed("_NEWLINE", at=at)
@@ -231,14 +229,13 @@ class _Reader:
                 return
         self.resume(stop, where)
 
-    def spoilt(self, code: str, pieces: list[Piece], word: str, where: str) -> bool:
-        # Complete, but something else was meant: kept, it would draw further errors.
-        first = pieces[0].text if pieces else ""
-        return code == "E104" or (first in ("play", "step", "total") and word not in VOCABULARY[where])
-
     def resume(self, stop: int, where: str) -> None:
         """Put BROKEN in the place of the statement, or of the header of a block, and go on at ``stop``."""
-        header = self.unwind()
+        state = self.parser.parser_state
+        while not self.takes("BROKEN"):  # what was read of the broken part goes
+            state.state_stack.pop()
+            state.value_stack.pop()
+        header = not self.takes("SEMICOLON")  # headers may go on over line ends, statements end there
         if header and (self.opener == "icon" or self.listing):
             self.names = None
         self.listing = False
@@ -268,16 +265,7 @@ class _Reader:
             self.line = (at, self.source.stop(at))
         return self.line[1]
 
-    def unwind(self) -> bool:
-        """Drop what was read of the broken part; true when a header, not a whole statement, is to be replaced."""
-        state = self.parser.parser_state
-        while not self.takes("BROKEN"):
-            state.state_stack.pop()
-            state.value_stack.pop()
-        return not self.takes("SEMICOLON")  # headers may go on over line ends, statements end there
-
     def takes(self, kind: str) -> bool:
-        """Tell whether the parser could take a token of this kind now."""
         return _takes(self.parser.parser_state.state_stack, kind)
 
     def finish(self) -> None:

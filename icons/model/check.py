@@ -46,17 +46,6 @@ class Problem:
     off_s: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
-class Survey:
-    """A summary of a body: its problems, duration (s), extreme levels (°C or A), steepest slope (K/s or A/s)."""
-
-    problems: list[Problem]
-    duration_s: float = 0.0
-    lowest: float = 0.0
-    highest: float = 0.0
-    steepest_per_s: float = 0.0
-
-
 def corner_count(body: Sequence[Statement | Broken], known: dict[int, int] | None = None) -> int:
     """Return how many corners a body can have at most once its repeats are written out."""
     known = {} if known is None else known
@@ -75,7 +64,7 @@ def corner_count(body: Sequence[Statement | Broken], known: dict[int, int] | Non
 
 def survey(
     body: Sequence[Statement | Broken], control: Control, rest: Fraction | None, played: Played | None = None
-) -> Survey:
+) -> "_Survey":
     """The summary of a body from the level ``rest`` (None: not known) on; ``played`` caches played icons."""
     if (corners := corner_count(body)) > MOST_CORNERS:
         worst = max(
@@ -86,32 +75,36 @@ def survey(
         many = f"{corners:,}" if corners < 10**15 else "more than 10^15"
         what = f"written out, this icon has {many} corners"
         part = "count" if isinstance(worst, Repeat) else "whole"
-        return Survey([Problem(worst, "E220", part, what, f"an icon has at most {MOST_CORNERS:,} corners")])
-    walker = _Walker(control, rest, played={} if played is None else played)
+        problem = Problem(worst, "E220", part, what, f"an icon has at most {MOST_CORNERS:,} corners")
+        return _Survey(control, rest, [problem])
+    found = _Survey(control, rest, played={} if played is None else played)
     if rest is not None:
-        walker.lowest = walker.highest = float(rest)
-    _, duration = walker.run(body, rest)
-    seconds = float(duration)  # Fractions are compared only where floats leave a doubt
+        found.lowest = found.highest = float(rest)
+    _, duration = found.run(body, rest)
+    found.duration_s = seconds = float(duration)  # Fractions are compared only where floats leave a doubt
     if seconds >= LONGEST_S and duration > LONGEST_S:
         what = f"this icon lasts {seconds:,.6g} s"
-        walker.found.append(Problem(None, "E221", "name", what, "an icon lasts at most one hour (3600 s)"))
-    if walker.timed and seconds == 0 and body and not walker.found:
+        found.problems.append(Problem(None, "E221", "name", what, "an icon lasts at most one hour (3600 s)"))
+    if found.timed and seconds == 0 and body and not found.problems:
         help = 'a step takes no time; follow it with a line such as "hold for 2 s"'
-        walker.found.append(Problem(None, "E223", "name", "this icon lasts 0 s", help))
-    if walker.timed:
-        walker.totals(body, duration)
-    return Survey(walker.found, seconds, walker.lowest, walker.highest, walker.steepest_per_s)
+        found.problems.append(Problem(None, "E223", "name", "this icon lasts 0 s", help))
+    if found.timed:
+        found.totals(body, duration)
+    return found
 
 
 @dataclass(slots=True)
-class _Walker:
+class _Survey:
+    """What a body does: its problems, duration (s), extreme levels (°C or A) and steepest slope (K/s or A/s)."""
+
     control: Control
     rest: Fraction | None
-    found: list[Problem] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
     blamed: set[int] = field(default_factory=set)
     played: Played = field(default_factory=dict)
     # Behind a statement that could not be read, the duration of the icon is unknown.
     timed: bool = True
+    duration_s: float = 0.0
     lowest: float = math.inf
     highest: float = -math.inf
     steepest_per_s: float = 0.0
@@ -222,7 +215,7 @@ class _Walker:
                     few = f"it is {float(abs(off)):.6g} s too {'short' if off < 0 else 'long'}"
                     text = f"{decimal_text(float(f'{float(duration):.9g}'))} s"
                     help = f"a total is checked, nothing is filled up or cut: {few}"
-                    self.found.append(Problem(part, "E222", "time", what, help, (("time", text),), float(abs(off))))
+                    self.problems.append(Problem(part, "E222", "time", what, help, (("time", text),), float(abs(off))))
 
     def side(self, part: Leaf, level: Fraction, rest: Fraction) -> None:
         unit = "A" if self.control == "current" else "°C"
@@ -255,7 +248,7 @@ class _Walker:
     def blame(self, part: Leaf | Play, code: str, where: str, what: str, help: str, *cures: tuple[str, str]) -> None:
         if id(part) not in self.blamed:
             self.blamed.add(id(part))
-            self.found.append(Problem(part, code, where, what, help, cures))
+            self.problems.append(Problem(part, code, where, what, help, cures))
 
 
 def advance_blind(part: Leaf) -> Fraction:

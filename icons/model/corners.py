@@ -120,13 +120,7 @@ def corners(body: Sequence[Statement], start: Fraction, quantity: Quantity, tole
                 times.append(times[-1] + duration)
                 levels.append(target)
                 slope = steepness
-    return _spread(times, levels, quantity)
-
-
-def _spread(times: list[Fraction], levels: list[Fraction], quantity: Quantity) -> Corners:
-    """Corners with the ends of every step drawn apart, by less than a neighbour: the later end moves, or at the end the
-    earlier.
-    """
+    # The ends of every step are drawn apart, by less than a neighbour: the later end moves, or at the end the earlier.
     apart = Fraction(STEP_S).limit_denominator(10**9)
     steps = [n for n, (a, b) in enumerate(pairwise(times)) if a == b]
     for n in steps:

@@ -93,8 +93,6 @@ class _Writer:
                 start = "" if part.start in ("warm", "up") else f" starting {part.start}"
                 cut = " cut" if part.cut else ""
                 return f"{part.shape} {self.goal(part, path)} every {period} for {time}{start}{cut}"
-            case Broken() | Repeat():
-                raise ValueError("a statement that could not be read has no text")
         return f"return {self.pace(part, path)}"
 
 

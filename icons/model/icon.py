@@ -125,8 +125,7 @@ class Icon(Drawn):
         )
 
     def _prove(self, level: Fraction) -> None:
-        found = survey(self.statements, self.context.control, level).problems
-        if found:
+        if found := survey(self.statements, self.context.control, level).problems:
             raise CueErrors(tuple(problem_error(problem, self.name, self.context) for problem in found))
 
 

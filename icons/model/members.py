@@ -164,9 +164,9 @@ def check_family(members: Expander, context: Context, start: float | None = None
         elif first is None:
             one = Extremes(course.duration_s, course.duration_s, course.lowest, course.highest, course.steepest_per_s)
             summary = one if summary is None else summary.joined(one)
-    if first is not None or summary is None:
-        assert first is not None
+    if first is not None:
         raise MemberErrors(replace(first, failing=failing), context)
+    assert summary is not None
     return summary
 
 

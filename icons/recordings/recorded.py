@@ -92,7 +92,9 @@ def from_csv(
     (32.0, 26.0, 26.0, 32.0)
     """
     read = read_readings(path, column, columns)
-    return _icon(read, name or _name(Path(path)), control, tolerance_K, baseline_C)
+    stem = re.sub(r"[\W_]+", "-", Path(path).stem).strip("-")
+    usual = f"recorded-{stem}".rstrip("-") if name_fault(stem) else stem
+    return _icon(read, name or usual, control, tolerance_K, baseline_C)
 
 
 @checked
@@ -168,11 +170,6 @@ def _statements(times: Sequence[float], levels: Sequence[float]) -> Iterator[Sta
             yield Return(duration_s=duration)
         else:
             yield Ramp("warm" if after > before else "cool", to_C=after, duration_s=duration)
-
-
-def _name(path: Path) -> str:
-    name = re.sub(r"[\W_]+", "-", path.stem).strip("-")
-    return name if not name_fault(name) else f"recorded-{name}".rstrip("-")
 
 
 @dataclass(frozen=True, slots=True)

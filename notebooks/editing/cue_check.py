@@ -5,12 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
-from typing import TYPE_CHECKING
 
 from thermicon.icons import CueErrors, Family, Icon, IconSet, parse
-
-if TYPE_CHECKING:
-    from thermicon.icons.model.errors import CueError
+from thermicon.icons.model.errors import CueError
 
 MOST_NAMES = 200
 """Names that a list of icons shows; a family may have 100,000 members."""
@@ -34,7 +31,6 @@ class Trouble:
 class Reading:
     """A text read: the set, or its troubles with how many ``more`` there are than are listed."""
 
-    text: str
     icons: IconSet | None
     troubles: tuple[Trouble, ...] = ()
     more: int = 0
@@ -63,9 +59,9 @@ def read_text(text: str) -> Reading:
     'missing unit: this number has no unit'
     """
     try:
-        return Reading(text, parse(text, "text"))
+        return Reading(parse(text, "text"))
     except CueErrors as found:
-        return Reading(text, None, tuple(map(trouble_of, found.errors)), found.more)
+        return Reading(None, tuple(map(trouble_of, found.errors)), found.more)
 
 
 def trouble_of(error: CueError) -> Trouble:

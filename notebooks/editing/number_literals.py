@@ -7,16 +7,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from decimal import Decimal
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from thermicon.icons.model.statements import Current, Ramp, Repeat, Return, Total
+from thermicon.icons import Icon
+from thermicon.icons.model.statements import Current, Leaf, Ramp, Repeat, Return, Total
 from thermicon.icons.model.units import UNITS, Kind
 
 from .cue_check import read_text
-
-if TYPE_CHECKING:
-    from thermicon.icons import Icon
-    from thermicon.icons.model.statements import Leaf
 
 _BLANK = r"[ \t\u00a0\u202f]*"
 _NUMBER = r"[+\-\u2212]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+\-\u2212]?[0-9]+)?"

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..files.trace_files import Aligned, quantity, unit_of_difference
-from .style import BROAD, COOL, GREY, INK, PLACES, TARGET, WARM, on_one_clock, plain
+from .style import BROAD, COOL, GREY, INK, PLACES, TARGET, WARM, new_figure, on_one_clock, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,13 +26,12 @@ def compare_figure(pairs: Sequence[tuple[str, Aligned]], across: int = 3) -> Fig
 
     A is a broad grey line, B a thin one on top; cold receptors are blue, warm ones orange.
     """
-    from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
     panels = [(title, both, name) for title, both in pairs for name in _shown(both, 6 if len(pairs) == 1 else 1)]
     across = min(across, len(panels))
     down = -(-len(panels) // across)
-    figure = Figure(figsize=(0.8 + 3.3 * across, 0.7 + 3.6 * down), layout="constrained")
+    figure = new_figure(0.8 + 3.3 * across, 0.7 + 3.6 * down)
     grid = figure.subplots(2 * down, across, squeeze=False, height_ratios=[2.0, 1.0] * down)
     for place in range(down * across):
         row, column = divmod(place, across)
@@ -87,10 +86,8 @@ def _draw(ax: Axes, time: Array, values: Array, name: str, *, color: str, lw: fl
 
 def export_figure(ready: Export, place: int = 0, size: tuple[float, float] = (8.0, 6.4)) -> Figure:
     """Return a matplotlib Figure of one of the prepared icons: as designed and as its device delivers it."""
-    from matplotlib.figure import Figure
-
     one = ready.prepared[place]
-    figure = Figure(figsize=size, layout="constrained")
+    figure = new_figure(*size)
     delivery = one.delivery
     axes = figure.subplots(3, 1, sharex=True, height_ratios=[1.3, 1.0, 1.0])
     designed, delivered = delivery.designed_trace, delivery.trace

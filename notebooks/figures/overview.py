@@ -13,7 +13,7 @@ from thermicon.circuit.solver.trace import Trace
 from thermicon.icons.model.arguments import checked
 
 from .set_figures import set_figure
-from .style import COOL, GREY, INK, LIMIT, PLACES, TARGET, WARM, on_one_clock
+from .style import COOL, GREY, INK, LIMIT, PLACES, TARGET, WARM, new_figure, on_one_clock
 from .sweep_figure import sweep_figure
 
 if TYPE_CHECKING:
@@ -59,8 +59,6 @@ def overview(
     >>> [ax.get_ylabel() for ax in overview(trace).axes][2]
     'current (A)'
     """
-    from matplotlib.figure import Figure
-
     from thermicon.perception import Ranking
 
     if isinstance(trace, Ranking):
@@ -68,7 +66,7 @@ def overview(
     if not isinstance(trace, Trace):
         return sweep_figure(trace)
     panels = [_temperatures, _heat_flow, *([_current] if trace.has_current else [])]
-    figure = Figure(figsize=(8.0, 8.4 if percept is not None else 6.4), layout="constrained")
+    figure = new_figure(8.0, 8.4 if percept is not None else 6.4)
     count = len(panels) + (percept is not None)
     heights = [1.5, 1.2, *([0.9] if trace.has_current else []), *([] if percept is None else [1.1])]
     axes = figure.subplots(count, 1, sharex=True, height_ratios=heights)
@@ -139,8 +137,6 @@ def scene_figure(scene: Scene) -> Figure:
 
     A scene without a drawing gives a figure that says why.
     """
-    from matplotlib.figure import Figure
-
     badge = scene.badge
     told = [f"{badge.colour.upper()}  {badge.text}"]
     told += [*(f"line {trouble.line}: {trouble.headline}" for trouble in scene.troubles), *scene.notes]
@@ -148,7 +144,7 @@ def scene_figure(scene: Scene) -> Figure:
     if len(lines) > MOST_LINES:
         lines = [*lines[: MOST_LINES - 1], f"and {len(lines) - MOST_LINES + 1} more lines"]
     if scene.drawing is None:
-        figure = Figure(figsize=(8.0, 2.0), layout="constrained")
+        figure = new_figure(8.0, 2.0)
         figure.suptitle("\n".join(lines), fontsize=10, x=0.01, ha="left")
         return figure
     figure = overview(scene.drawing.trace, scene.drawing.percept, scene.drawing.rig.changes)

@@ -162,26 +162,23 @@ def _break_labels(figure: Figure) -> None:
         text.set_text("\n".join(lines))
 
 
-def _resize(figure: Figure) -> None:
+def _resize(figure: Any) -> None:
     """Letters and lines in the sizes of print."""
     from matplotlib.lines import Line2D
     from matplotlib.text import Annotation, Text
 
-    words: list[Any] = list(figure.findobj(Text))
-    for text in words:
+    for text in figure.findobj(Text):
         text.set_fontsize(_printed_pt(float(text.get_fontsize())))
         if isinstance(text, Annotation) and text.anncoords == "offset points":
-            text.xyann = tuple(TYPE_PT / 10.0 * part for part in text.xyann)  # type: ignore[assignment]
-    lines: list[Any] = list(figure.findobj(Line2D))
-    for line in lines:
+            text.xyann = tuple(TYPE_PT / 10.0 * part for part in text.xyann)
+    for line in figure.findobj(Line2D):
         line.set_linewidth(THINNER * float(line.get_linewidth()))
         line.set_markersize(THINNER * float(line.get_markersize()))
     for ax in figure.axes:
         for spine in ax.spines.values():
             spine.set_linewidth(THINNER * float(spine.get_linewidth()))
         for name, labels in (("x", ax.get_xticklabels()), ("y", ax.get_yticklabels())):  # for ticks yet to be made
-            size: Any = labels[0].get_fontsize() if labels else TYPE_PT
-            ax.tick_params(axis=name, labelsize=size)  # type: ignore[arg-type]
+            ax.tick_params(axis=name, labelsize=labels[0].get_fontsize() if labels else TYPE_PT)
 
 
 def _printed_pt(size: float) -> float:

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .style import SCREEN, Look
+from thermicon.perception.plots import draw_heat
+
+from .style import SCREEN, Look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,31 +29,23 @@ def narrowest_mm(names: Sequence[str], beside: int = 1) -> float:
 
 
 def _longest(names: Sequence[str]) -> int:
-    from thermicon.perception.plots.draw_heat import short
-
-    return max(len(short(name)) for name in names)
+    return max(len(draw_heat.short(name)) for name in names)
 
 
 def _side(names: Sequence[str], look: Look) -> tuple[float, bool]:
     """Inches of a heat map on the screen, and whether two of them stand below one another."""
-    from thermicon.perception.plots.draw_heat import FEW
-
-    cell = 0.45 if len(names) <= FEW else 0.28
+    cell = 0.45 if len(names) <= draw_heat.FEW else 0.28
     stacked = look.narrow or (look.width_mm is not None and look.width_mm < narrowest_mm(names, 2))
     return max(4.2, 1.2 + 0.07 * _longest(names) + cell * len(names)), stacked
 
 
 def set_figure(ranking: Ranking, look: Look = SCREEN) -> Figure:
     """Draw distances (d′) and predicted confusions of one set side by side, in print below one another as needed."""
-    from matplotlib.figure import Figure
-
-    from thermicon.perception.plots import draw_heat
-
     side, stacked = _side(ranking.labels, look)
     down, across = (2, 1) if stacked else (1, 2)
     names = 0.06 * _longest(ranking.labels) if stacked else 0.0  # of the upper one, which stand below the lower one
     high = down * (FLAT if stacked else 1.0) * side - names
-    figure = Figure(figsize=(across * (side + 0.6), high), layout="constrained")
+    figure = new_figure(across * (side + 0.6), high)
     distance, confusion = figure.subplots(down, across)
     draw_heat.plot_distance(ranking, ax=distance)
     draw_heat.plot_confusion(ranking, ax=confusion)
@@ -65,10 +59,7 @@ def set_figure(ranking: Ranking, look: Look = SCREEN) -> Figure:
 
 def observed_figure(found: Observed[Any, Any], look: Look = SCREEN) -> Any:
     """Draw observed beside predicted answers, and per cent correct before and after; of measurements that alone."""
-    from matplotlib.figure import Figure
-
     from thermicon.perception.pilot.conditioning import Namings
-    from thermicon.perception.plots import draw_heat
 
     if not isinstance(found.data, Namings):
         return found.plot().figure
@@ -81,7 +72,7 @@ def observed_figure(found: Observed[Any, Any], look: Look = SCREEN) -> Any:
     heights = [side, low]
     if stacked:
         rows, heights = [[name] for name in (*maps, "after")], [FLAT * (side - 0.6), FLAT * side, low]
-    figure = Figure(figsize=(len(rows[0]) * (side + 0.6), sum(heights)), layout="constrained")
+    figure = new_figure(len(rows[0]) * (side + 0.6), sum(heights))
     axes = figure.subplot_mosaic(rows, height_ratios=heights)
     for title, values in maps.items():
         draw_heat.heat(names, names, 100.0 * values, axes[title], top=100.0, bend=0.5)

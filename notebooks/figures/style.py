@@ -69,6 +69,13 @@ def read_width_mm(text: str) -> float:
     return width
 
 
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure of so many inches, outside of pyplot, whose parts make room for one another."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
+
+
 def plain(*axes: Axes) -> None:
     """Give axes a faint grid, and no frame at the top and at the right."""
     for ax in axes:

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.circuit.rig.faults import name_of, unit_of
 from thermicon.icons.model.arguments import InputError
 from thermicon.perception.ranking.swept import ALL, MEASURES
 
-from .style import INK, SCREEN, Look, plain
+from .style import INK, SCREEN, Look, new_figure, plain
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -108,8 +109,6 @@ def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
 
 def key_label(key: str) -> str:
     """The key in words with its unit; an age is in years."""
-    from thermicon.circuit.rig.faults import name_of, unit_of
-
     unit = "years" if key.endswith("_years") else unit_of(key)
     words = name_of(key).removesuffix("_years").replace(".", " ").replace("_", " ")
     words = words.replace("seebeck", "Seebeck coefficient")
@@ -127,12 +126,10 @@ def _same(frame: pd.DataFrame, columns: tuple[str, ...]) -> bool:
 
 def _small_multiples(count: int, across: int) -> tuple[Figure, list[Axes]]:
     """A figure with so many panels on one abscissa; those with none below them have its numbers."""
-    from matplotlib.figure import Figure
-
     across = min(across, count)
     down = -(-count // across)
     height = HIGHEST if across == WIDE else min(HIGHEST, COLUMN_INCHES / down)
-    figure = Figure(figsize=(max(7.2, 3.2 * across), 0.4 + height * down), layout="constrained")
+    figure = new_figure(max(7.2, 3.2 * across), 0.4 + height * down)
     axes = list(figure.subplots(down, across, sharex=True, squeeze=False).flat)
     for ax in axes[count:]:
         ax.remove()

@@ -10,9 +10,15 @@ from typing import TYPE_CHECKING
 
 import numpy
 
+from thermicon.circuit.inputs import read_bytes, table_fault
+from thermicon.circuit.solver.trace import COLUMNS
+from thermicon.icons.files.measured_table import measured, missing
+from thermicon.icons.files.table import read_table
 from thermicon.icons.model.arguments import InputError
 from thermicon.icons.near_words import did_you_mean
 from thermicon.icons.number_text import number, span
+
+from ..messages import usage
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -72,11 +78,6 @@ def read_curves(path: str, icon: str | None = None, theirs: Mapping[str, str] | 
 
     `theirs` says what the file calls our columns. Raises TraceFileError that says what is wrong and where.
     """
-    from thermicon.circuit.inputs import read_bytes, table_fault
-    from thermicon.circuit.solver.trace import COLUMNS
-    from thermicon.icons.files.measured_table import measured, missing
-    from thermicon.icons.files.table import read_table
-
     where, example = Path(path), "time_s,display_C,skin_C"
     data = read_bytes(where, "trace or log", MOST_MB, TraceFileError)
     table = read_table(data, table_fault(path, TraceFileError), example, MOST_ROWS, COLUMNS[1:], theirs)
@@ -95,8 +96,6 @@ def read_curves(path: str, icon: str | None = None, theirs: Mapping[str, str] | 
 
 
 def _rows_of(icons: list[str], path: str, icon: str | None) -> list[int]:
-    from ..messages import usage
-
     names = list(dict.fromkeys(icons))
     if icon is None and len(names) > 1:
         raise usage(f"{path} has traces of {len(names)} icons; name one of {', '.join(names)}", "--icon")

@@ -8,11 +8,14 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.icons import Icon, IconSet
+from thermicon.circuit import Device, Rig
+from thermicon.circuit.delivery.formats import FormatError, load_format
+from thermicon.circuit.delivery.pack import check_names
+from thermicon.circuit.solver.simulate import duration_s
+from thermicon.icons import Icon, IconSet, read_cue
 from thermicon.icons.model.context import Context, Metadata
 from thermicon.icons.model.statements import Hold, Ramp, Return
 from thermicon.icons.near_words import did_you_mean
@@ -32,9 +35,6 @@ from .study_file import (
     study_text,
 )
 from .timing import Landing, find_gap, find_landing
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Device, Rig
 
 ProgressBar = Callable[..., AbstractContextManager[Progress | None]]
 
@@ -80,11 +80,6 @@ class Plan:
 
 def read_materials(source: str | Path) -> Materials:
     """Read a study file and what it names, beside it or shipped; every fault is raised before anything is simulated."""
-    from thermicon.circuit import Device
-    from thermicon.circuit.delivery.formats import FormatError, load_format
-    from thermicon.circuit.delivery.pack import check_names
-    from thermicon.icons import read_cue
-
     text = study_text(source)
     study = parse_study(text, str(source))
     folder = Path(source).parent
@@ -100,18 +95,16 @@ def read_materials(source: str | Path) -> Materials:
         form.check(device)
     except FormatError as problem:
         raise StudyError(f"{source}: stimuli.device: {problem}") from None
-    if not stimuli.icons:
-        check_counts(study, len(icons))
     for name in stimuli.icons:
         if icons.find(name) is None:
             known = [icon.name for icon in (icons if len(icons) <= MOST_SUGGESTED else icons.entries)]
             raise StudyError(f"{source}: stimuli.icons: there is no icon {name}; {did_you_mean(name, known)}")
+    check_counts(study, len(stimuli.icons) or len(icons))
     if not stimuli.icons and len(icons) > MOST_ASKED:
         raise StudyError(
             f"{source}: the set has {len(icons):,} icons, and a person can be asked for {MOST_ASKED}; name some"
         )
     chosen = tuple(icons[name] for name in stimuli.icons) if stimuli.icons else tuple(icons)
-    check_counts(study, len(chosen))
     check_names([icon.name for icon in chosen], form)
     contents = {
         "icons": icons.content_hash,
@@ -123,8 +116,6 @@ def read_materials(source: str | Path) -> Materials:
 
 def _rig_of(stimuli: Stimuli, folder: Path, site: str | None) -> Rig:
     """The rig of a study with its changes; unless one is named, the usual one for a site."""
-    from thermicon.circuit import Rig
-
     rig = Rig.of(None if stimuli.rig is None else _beside(stimuli.rig, folder), site)
     return rig.with_set(list(stimuli.rig_changes)) if stimuli.rig_changes else rig
 
@@ -140,8 +131,6 @@ def make_plan(materials: Materials, bar: ProgressBar, say: Callable[[str], None]
 
     `say` receives the plan before the verdicts, which take most of the time.
     """
-    from thermicon.circuit.solver.simulate import duration_s
-
     study, rig, icons = materials.study, materials.rig, materials.chosen
     held = materials.device.kind.regulated
     mean_s = sum(duration_s(icon, rig) for icon in icons) / len(icons)

@@ -12,6 +12,11 @@ from importlib import resources
 from importlib.metadata import version
 from typing import Any
 
+from thermicon.circuit.delivery.formats.tables import has_voltage
+from thermicon.circuit.delivery.pack import sidecar_name
+from thermicon.circuit.rig.settings import toml_text
+
+from ..figures.session_figure import session_figure
 from .build import FELT, UNFELT, Plan, levels_K, plays_of
 from .schedule import Pace, events_description, json_bytes, planned_events, planned_plays, table
 from .study_file import labels_of
@@ -30,8 +35,6 @@ CATCH, MANIFEST = "nothing", "study.json"
 
 def files_of(plan: Plan) -> dict[str, bytes]:
     """Return the bytes of every file of a study, by name; equal studies give equal bytes."""
-    from thermicon.circuit.rig.settings import toml_text
-
     materials, ready = plan.materials, plan.judged.ready
     study = materials.study
     names = list(plan.durations_s)
@@ -96,8 +99,6 @@ def planned_s(plan: Plan) -> float:
 
 def study_facts(plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, int]) -> dict[str, Any]:
     """Return what the script reads and what a methods section needs; units are in the names."""
-    from thermicon.circuit.delivery.formats.tables import has_voltage
-
     materials, judged, landing = plan.materials, plan.judged, plan.landing
     study, threshold = materials.study, materials.study.threshold
     left_out = ("plays", "checks", "uncertainty", "limits", "what_it_is_not")
@@ -160,8 +161,6 @@ def _texts(plan: Plan) -> dict[str, str]:
 
 
 def _drive(name: str, plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, int]) -> dict[str, str]:
-    from thermicon.circuit.delivery.pack import sidecar_name
-
     return {
         "drive_file": stimuli[name],
         "sidecar_file": sidecar_name(name, plan.judged.ready.form),
@@ -186,8 +185,6 @@ def _icons(plan: Plan) -> str:
 
 def _timeline(plan: Plan) -> dict[str, bytes]:
     """The first session that was judged, on the clock; nothing for a thermode, which has none."""
-    from ..figures.session_figure import session_figure
-
     if not plan.judged.sessions:
         return {}
     content = io.BytesIO()

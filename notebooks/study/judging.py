@@ -5,21 +5,19 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
+import numpy as np
+
+from thermicon.circuit import Device, Export, Rig, Session, SessionPlan, export, play_session, simulate_current
+from thermicon.circuit.safety.sessionplay import WorstCase, drive_of, worst_case_of
+from thermicon.circuit.safety.tally import cem43_min
+from thermicon.icons import Icon
 from thermicon.icons.model.arguments import advised
 
 from ..files.exporting import felt_in
 from .schedule import Schedule
-from .study_file import StudyError
+from .study_file import Study, StudyError
 from .timing import Gap
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Device, Export, Rig, Session
-    from thermicon.circuit.safety.sessionplay import WorstCase
-    from thermicon.icons import Icon
-
-    from .study_file import Study
 
 NUMBER = re.compile(r"\d+(\.\d+)?")
 ALL_JUDGED = 4
@@ -73,8 +71,6 @@ def judge_drives(
     icons: Sequence[Icon], rig: Rig, study: Study, gap: Gap, device: Device, step: Progress | None = None
 ) -> tuple[Export, Gap]:
     """Deliver and judge every drive, repeated in any order with the gap; a derived gap grows until that is safe."""
-    from thermicon.circuit import export
-
     stimuli, timing = study.stimuli, study.timing
 
     def prepared(pause_s: float) -> Export:
@@ -115,9 +111,6 @@ def judge_sessions(
     Every order is run on the rig as given; in all corners those of up to four participants, or the most extreme ones.
     Where there are breaks, each is run without them, and with every block from rest. Raises StudyRefused if one is red.
     """
-    from thermicon.circuit import SessionPlan, play_session
-    from thermicon.circuit.safety.sessionplay import drive_of, worst_case_of
-
     if rig.thermode is not None:
         return {}, {}, {}
     tracking, known = "display" if held else "replay", {icon.name: icon for icon in icons}
@@ -165,12 +158,6 @@ def _nominal(
     order: tuple[str, ...], icons: Sequence[Icon], rig: Rig, gap_s: float, tracking: str
 ) -> tuple[float, float, float, float]:
     """Coldest and warmest skin in °C, dose in min CEM43 and largest drift in K of an order on the rig as given."""
-    import numpy as np
-
-    from thermicon.circuit import SessionPlan, simulate_current
-    from thermicon.circuit.safety.sessionplay import drive_of
-    from thermicon.circuit.safety.tally import cem43_min
-
     known = {icon.name: icon for icon in icons}
     played = drive_of(SessionPlan(order, gap_s), known, rig, tracking)
     trace = simulate_current(played.drive, rig, rate_Hz=played.rate_Hz, start_C=played.start_C)

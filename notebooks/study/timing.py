@@ -5,19 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .study_file import StudyError
+from thermicon.circuit import Drive, Rig, design, simulate_current
+from thermicon.circuit.solver.inverse import baseline_C
+from thermicon.circuit.solver.modes import FELT, modes_of
+from thermicon.circuit.solver.network import SKIN
+from thermicon.circuit.solver.simulate import duration_s
+from thermicon.icons import Icon
+from thermicon.perception.identification.carry_over import carry_over
+from thermicon.perception.identification.population import TAIL_S
+from thermicon.perception.kernels.parallel import step_counter
+from thermicon.perception.observer.channels import MEMORY_FORMS, USUAL_MEMORY
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from thermicon.circuit import Rig
-    from thermicon.icons import Icon
-
-    from .study_file import Timing
+from .study_file import StudyError, Timing
 
 GAPS_S = (0.0, 5.0, 10.0, 15.0, *np.arange(20.0, 121.0, 10.0).tolist(), 150.0, 180.0, 240.0, 300.0, 420.0, 600.0)
 """Gaps tried, the longest first: what is left behind may rise before it falls, when after-sensations come late."""
@@ -56,11 +59,6 @@ class Landing:
 
 def carried_over(icons: Sequence[Icon], rig: Rig, gap_s: float, held: bool) -> tuple[float, tuple[str, str]]:
     """Largest d′ by which an icon differs from itself alone, after which icon, and which one it is."""
-    from thermicon.circuit.solver.simulate import duration_s
-    from thermicon.perception.identification.carry_over import carry_over
-    from thermicon.perception.identification.population import TAIL_S
-    from thermicon.perception.observer.channels import MEMORY_FORMS, USUAL_MEMORY
-
     end_s = max(duration_s(icon, rig) for icon in icons) + TAIL_S
     left = carry_over(icons, rig, end_s, gap_s, tracking=None if held else "replay")
     d_prime = left.apart[MEMORY_FORMS.index(USUAL_MEMORY)]
@@ -75,8 +73,6 @@ def find_gap(
 
     Raises StudyError where no gap up to 10 min suffices.
     """
-    from thermicon.perception.kernels.parallel import step_counter
-
     wanted, step = timing.carry_over_d_prime, step_counter(progress, len(GAPS_S))
     seen: dict[float, tuple[float, tuple[str, str]]] = {}
 
@@ -141,12 +137,6 @@ def settling(icon: Icon, rig: Rig, from_K: float, held: bool) -> tuple[NDArray[n
 
     Skin arrives `from_K` warmer or colder than it rests; the display stays at baseline (`held`), or the current does.
     """
-    from thermicon.circuit import Drive, design, simulate_current
-    from thermicon.circuit.solver.inverse import baseline_C
-    from thermicon.circuit.solver.modes import FELT, modes_of
-    from thermicon.circuit.solver.network import SKIN
-    from thermicon.circuit.solver.simulate import duration_s
-
     modes = modes_of(rig)
     columns = ("skin_C", "cold_receptor_C", "warm_receptor_C")
     times = np.arange(LONGEST_LANDING_S + 1.0)

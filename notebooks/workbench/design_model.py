@@ -100,12 +100,8 @@ class DesignModel:
 
     def take_rig(self, rig: Rig) -> CanvasFrame:
         """Show the icons on another rig, with its own values."""
-
-        def act() -> None:
-            self.nominal = rig
-            self._set({})
-
-        return self._answer(act)
+        self.nominal = rig
+        return self.reset()
 
     def frame(self) -> CanvasFrame:
         """The frame as it is now, with the text."""

@@ -53,12 +53,24 @@ class DocumentBar:
         self.rig.style.description_width = "auto"
         self._offer_rigs()
         self.rig.observe(lambda change: self._safely(lambda: self._take_rig(change["new"])), "value")
-        self._panels = {"open": self._open_panel(), "save": self._save_panel()}
+        self.files = widgets.Select(options=[], rows=9, description="open", layout={"width": "330px"})
+        self.path = widgets.Text(placeholder="or its path", description="file", layout={"width": "250px"})
+        for control in (self.files, self.path):
+            control.style.description_width = "36px"
+        go = self._button("Open it", "open what is selected or typed", self._open_selected)
+        self._panels = {"open": widgets.VBox([self.files, widgets.Box([self.path, go])])}
+        self.name = widgets.Text(placeholder="alerts.cue", description="file", layout={"width": "320px"})
+        self.overwrite = widgets.Checkbox(value=False, description="overwrite", indent=False, layout={"width": "110px"})
+        go = self._button("Save it", "write the file", self._save_as)
+        self._panels["save"] = widgets.Box([self.name, self.overwrite, go]).add_class("thermicon-row")
         self._panels["help"] = widgets.VBox([widgets.HTML(fragment("points", WORDS["sheet"]))])
         self.panel = widgets.VBox([]).add_class("thermicon-panel")
         self.shown: str | None = None
         self.offered_text: Version | None = None
-        self.offer = self._offer_panel()
+        self.offered = widgets.HTML()
+        yes = self._button("Restore it", "as a step that can be undone", self._restore)
+        no = self._button("Discard", "drop what was not saved", self.discard)
+        self.offer = widgets.Box([self.offered, yes, no]).add_class("thermicon-offer")
         buttons = list(self.buttons.values())
         self.bar = widgets.Box([self.title, *buttons[:3], self.rig, *buttons[3:]]).add_class("thermicon-bar")
         self.box = widgets.VBox([self.offer, self.said, self.bar, self.panel]).add_class("thermicon-project")
@@ -135,26 +147,6 @@ class DocumentBar:
         files = self._files("*.toml")[:MOST_RIGS]
         self.rig.options = list(dict.fromkeys([self._taken, *self._rigs, *rig_names(), *files]))
         self.rig.value = self._taken
-
-    def _open_panel(self) -> widgets.Widget:
-        self.files = widgets.Select(options=[], rows=9, description="open", layout={"width": "330px"})
-        self.path = widgets.Text(placeholder="or its path", description="file", layout={"width": "250px"})
-        for control in (self.files, self.path):
-            control.style.description_width = "36px"
-        go = self._button("Open it", "open what is selected or typed", self._open_selected)
-        return widgets.VBox([self.files, widgets.Box([self.path, go])])
-
-    def _save_panel(self) -> widgets.Widget:
-        self.name = widgets.Text(placeholder="alerts.cue", description="file", layout={"width": "320px"})
-        self.overwrite = widgets.Checkbox(value=False, description="overwrite", indent=False, layout={"width": "110px"})
-        go = self._button("Save it", "write the file", self._save_as)
-        return widgets.Box([self.name, self.overwrite, go]).add_class("thermicon-row")
-
-    def _offer_panel(self) -> widgets.Box:
-        self.offered = widgets.HTML()
-        yes = self._button("Restore it", "as a step that can be undone", self._restore)
-        no = self._button("Discard", "drop what was not saved", self.discard)
-        return widgets.Box([self.offered, yes, no]).add_class("thermicon-offer")
 
     def _show_offer(self) -> None:
         self.offered_text = found = self.document.offer

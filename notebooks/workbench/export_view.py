@@ -40,9 +40,6 @@ class ExportView(LiveView[ExportRequest]):
     def __init__(self, design: DesignModel, folder: Path) -> None:
         super().__init__(design)
         self.ready: Export | None = None
-        self._build(folder)
-
-    def _build(self, folder: Path) -> None:
         names = device_names()
         usual = last_device(folder) or load_format(FORMAT).device
         wide = {"width": "100%"}
@@ -121,7 +118,6 @@ class ExportView(LiveView[ExportRequest]):
         return self.design.text, self.design.rig, name, self.device.value, self.form.value
 
     def _prepare(self, job: BackgroundJob, request: ExportRequest) -> None:
-        """The background job."""
         text, rig, name, device, form = request
         icons = read_text(text).icons
         assert icons is not None

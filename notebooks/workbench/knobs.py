@@ -51,7 +51,7 @@ def knobs_of(rig: Rig) -> tuple[Knob, ...]:
     smallest = round(min(Rig.load(name).contact.area_m2 for name in rig_names()) * 1e4, 6)
     contact = f"light touch of 3e-4 to 3e-3 m²·K/W, as stated in the shipped rigs; {spread.source}"
     areas = f"the finger pad of the fingertip rig; {thermode.quantity}: {thermode.source}"
-    return (
+    knobs = (
         Knob("contact.resistance_m2K_per_W", "contact resistance", "×", FIRMEST_TIMES, LIGHTEST_TIMES, 0.05, 1.0,
              "resistance between display and skin, as a multiple of the rig's", contact,
              times=rig.contact.resistance_m2K_per_W),
@@ -61,19 +61,18 @@ def knobs_of(rig: Rig) -> tuple[Knob, ...]:
              max(zone.interval[1], rig.skin.rest_C), 0.1, rig.skin.rest_C,
              "temperature of bare skin at rest, and baseline of icons that give none",
              f"{zone.quantity}: {zone.source}"),
-        *([] if rig.thermode is not None else [_limit_knob(rig)]),  # a thermode has no current
     )  # fmt: skip
-
-
-def _limit_knob(rig: Rig) -> Knob:
+    if rig.thermode is not None:  # it has no current
+        return knobs
     module, limit = rig.module, rig.driver.current_max_A
     # Greatest cooling, with the cold plate at rest temperature, is at αT/R.
     greatest_A = module.seebeck_V_per_K * (rig.skin.rest_C + ZERO_C_IN_K) / module.resistance_ohm
-    return Knob(
-        "driver.current_limit_A", "current limit", "A", min(LEAST_A, limit),
-        max(math.floor(10 * greatest_A) / 10, limit), 0.05, limit,
-        "largest current: limits how fast and how far temperature changes",
-        "up to the current of greatest cooling of the rig's module",
+    return (
+        *knobs,
+        Knob("driver.current_limit_A", "current limit", "A", min(LEAST_A, limit),
+             max(math.floor(10 * greatest_A) / 10, limit), 0.05, limit,
+             "largest current: limits how fast and how far temperature changes",
+             "up to the current of greatest cooling of the rig's module"),
     )  # fmt: skip
 
 

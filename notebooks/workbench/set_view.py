@@ -10,11 +10,13 @@ import ipywidgets as widgets
 from thermicon.circuit import Rig
 from thermicon.perception import Goal, Ranking, cheapest_edit
 from thermicon.perception.identification.map import PerceptualMap
+from thermicon.perception.plots.draw_map import plot_map
 from thermicon.perception.selection.edit import Edit, NoEdit
 
 from ..editing.cue_check import read_text
 from ..editing.number_literals import with_edit
 from ..figures.print_figure import themed_svg
+from ..figures.style import new_figure
 from ..report.blocks import Bullets, fragment, shown
 from ..report.rank_report import rank_report
 from ..report.set_report import SetReport
@@ -50,9 +52,6 @@ class SetView(LiveView[SetRequest]):
         self.picked: tuple[str, str] | None = None
         self.edit: Edit | NoEdit | None = None
         self.editor, self.chooser = BackgroundWorker(self._no_edit), BackgroundWorker(self._no_choice)
-        self._build()
-
-    def _build(self) -> None:
         self.heat, self.overlay = SideCanvas("heat"), SideCanvas("traces")
         self.heat.on_message(lambda message: self._safely(lambda: self._cell(message)))
         names = ("scores", "status", "choice", "table", "notes", "pair", "edit_text", "why", "map", "caveat")
@@ -117,7 +116,12 @@ class SetView(LiveView[SetRequest]):
         pair = made.pair(a, b)
         self.said["pair"].value, self.said["why"].value = pair_html(pair), shown(Bullets(pair.why))
         self.said["edit_text"].value = edit_html(None)
-        self.editor.ask(lambda job: self._look_for_edit(job, made, a, b), 0.1)
+
+        def look(job: BackgroundJob) -> None:
+            found = cheapest_edit(made.ranking, a, b)
+            job.on_page(lambda: self._offer_edit(found))
+
+        self.editor.ask(look, 0.1)
 
     def apply_edit(self) -> None:
         """Apply the suggested edit to the text, as one step that can be undone."""
@@ -212,10 +216,6 @@ class SetView(LiveView[SetRequest]):
         if well or self.picked is None:
             self._safely(lambda: self.pick(*pair))
 
-    def _look_for_edit(self, job: BackgroundJob, made: RankedSet, a: str, b: str) -> None:
-        found = cheapest_edit(made.ranking, a, b)
-        job.on_page(lambda: self._offer_edit(found))
-
     def _no_choice(self, said: str) -> None:
         self._show_choice(fragment("marked", f"no choice: {said}", "th-caution"))
 
@@ -251,13 +251,9 @@ class SetView(LiveView[SetRequest]):
 
 def map_html(found: PerceptualMap) -> str:
     """The perceptual map with its caption; takes a fifth of a second, so that it is drawn in the background."""
-    from matplotlib.figure import Figure
-
-    from thermicon.perception.plots.draw_map import plot_map
-
     spread = f"; each ellipse holds half of {found.people} people" if found.covariance is not None else ""
     note = fragment("block", f"distances are d′, stress {found.stress:.2f}{spread}", "th-soft")
-    figure = Figure(figsize=MAP_INCHES, layout="constrained")
+    figure = new_figure(*MAP_INCHES)
     plot_map(found, figure.add_subplot()).set_title("", loc="left")
     return f"{fragment('block', 'perceptual map', 'th-head')}{note}{themed_svg(figure)}"
 

@@ -160,7 +160,7 @@ def test_a_gallery_without_predictions_shows_every_set(builder: dict[str, Module
     from thermicon.icons.files.shipped import library_names
 
     written: dict[str, bytes] = {}
-    page = builder["gallery"].Gallery(None, written.__setitem__).markdown()
+    page = builder["gallery"].gallery(None, written.__setitem__)
     for name in library_names():
         assert f"## {name}\n" in page
         assert written[f"gallery/{name}.png"].startswith(b"\x89PNG")

@@ -37,14 +37,12 @@ def plot_effect(effect: Effect, ax: Axes | None = None) -> Axes:
     axes = new_axes(ax, (5.2, 3.2))
     for curve in effect.curves:
         axes.plot(curve.x, curve.y, label=curve.label, **LOOKS[curve.look])
-    axes.set_xscale("log" if effect.log_x else "linear")
-    axes.set_yscale("log" if effect.log_y else "linear")
+    axes.set(xscale="log" if effect.log_x else "linear", yscale="log" if effect.log_y else "linear")
     for log, axis in ((effect.log_x, axes.xaxis), (effect.log_y, axes.yaxis)):
         if log:
             axis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.set_xlim(float(effect.curves[0].x.min()), float(effect.curves[0].x.max()))
-    axes.set_xlabel(effect.x_label)
-    axes.set_ylabel(effect.y_label)
+    axes.set(xlabel=effect.x_label, ylabel=effect.y_label)
     axes.set_title(effect.title, loc="left", fontsize="medium")
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(fontsize="small", frameon=False)

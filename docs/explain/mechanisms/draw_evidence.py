@@ -59,8 +59,7 @@ def plot_left_out(rows: Sequence[PredictedRow], ax: Axes | None = None) -> Axes:
         inside = abs(row.score) <= 1.959964
         axes.plot(row.score, place, ls="", marker=marker, ms=5, mec=colour, mfc=colour if inside else "w")
     axes.set_yticks(places, [f"{row.experiment}  {row.label}" for row in rows], fontsize=7)
-    axes.set_ylim(len(rows) - 0.4, -0.6)
-    axes.set_xlim(-4.0, 4.0)
+    axes.set(xlim=(-4.0, 4.0), ylim=(len(rows) - 0.4, -0.6))
     axes.set_title("Left-out rows (open: missed)", loc="left", fontsize="medium")
     return _tidied(axes, "published minus predicted (SD of both)")
 
@@ -97,6 +96,5 @@ def plot_narrowing(constants: Sequence[Constant], ax: Axes | None = None) -> Axe
     axes.axvline(1.0, color=GREY, lw=0.8, ls=":")
     axes.axvspan(0.9, 1.0, color="#eeeeee", zorder=0)
     axes.set_yticks(places, [each.name for each in shown], fontsize=7)
-    axes.set_ylim(len(shown) - 0.4, -0.6)
-    axes.set_xlim(0.0, 1.04)
+    axes.set(xlim=(0.0, 1.04), ylim=(len(shown) - 0.4, -0.6))
     return _tidied(axes, "SD over the prior's SD (grey: over 0.9, as good as assumed)")

@@ -18,28 +18,22 @@ from thermicon.icons import Icon
 from .insulated import Pad
 
 
-@dataclass(frozen=True, slots=True)
-class Depths:
-    """A run at k depths: `depth_m` (k,), temperature in °C (k, rows), its trace."""
-
-    depth_m: Array
-    temperature_C: Array
-    trace: Trace
-
-
 def probe_depths(
-    cue: Icon | Drive, rig: Rig, depths_m: Sequence[float] | Array, *, rate_Hz: float = 100.0, tail_s: float = 0.0
-) -> Depths:
-    """Simulate a cue or a drive and record the temperature at depths in m; linear in resistance between lumps."""
+    cue: Icon | Drive, rig: Rig, depths_m: Sequence[float] | Array, *, tail_s: float = 0.0
+) -> tuple[Array, Trace]:
+    """Temperature in °C (depths, rows) at depths in m while a cue or a drive plays, and the trace of the run.
+
+    Between lumps it is linear in resistance.
+    """
     depths = np.array(depths_m, dtype=np.float64)
     own = tuple(Probe(f"depth-{k}", "skin", float(depth), 0.0) for k, depth in enumerate(depths))
     count, probed = len(rig.probes), replace(rig, probes=(*rig.probes, *own))
     if isinstance(cue, Icon):
-        trace = simulate(cue, probed, rate_Hz=rate_Hz, tail_s=tail_s)
+        trace = simulate(cue, probed, rate_Hz=100.0, tail_s=tail_s)
     else:
-        trace = simulate_current(cue, probed, rate_Hz=rate_Hz)
+        trace = simulate_current(cue, probed, rate_Hz=100.0)
     values = np.array([value for _, value in trace.probes[count:]])
-    return Depths(depths, values, replace(trace, probes=trace.probes[:count]))
+    return values, replace(trace, probes=trace.probes[:count])
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,10 +47,10 @@ class Likeness:
 def resembles(cue: Icon | Drive, rig: Rig, pad: Pad, *, tail_s: float = 0.0) -> Likeness:
     """Return the depth in the skin under the display whose changes a thermistor on insulated skin resembles most."""
     depth = np.concatenate([[0.0], rig.column.depth_m, [rig.skin.thickness_m]])
-    run = probe_depths(cue, rig, depth, tail_s=tail_s)
-    read = pad.reads(run.trace, rig)
-    change_K, wanted_K = run.temperature_C - run.temperature_C[:, :1], read - read[0]
-    best = Likeness(0.0, np.inf)
+    at_C, trace = probe_depths(cue, rig, depth, tail_s=tail_s)
+    read = pad.reads(trace, rig)
+    change_K, wanted_K = at_C - at_C[:, :1], read - read[0]
+    layers, best = np.cumsum([layer.thickness_m for layer in rig.skin.layers]), Likeness(0.0, np.inf)
     for k in range(len(depth) - 1):
         if depth[k + 1] - depth[k] < 1e-9:
             continue
@@ -65,13 +59,9 @@ def resembles(cue: Icon | Drive, rig: Rig, pad: Pad, *, tail_s: float = 0.0) -> 
         share = 0.0 if square == 0 else min(max(float((wanted_K - change_K[k]) @ step) / square, 0.0), 1.0)
         rms = float(np.sqrt(np.mean((wanted_K - change_K[k] - share * step) ** 2)))
         if rms < best.residual_K:
-            best = Likeness(_depth_at(rig, float(depth[k]), float(depth[k + 1]), share), rms)
+            # The depth at this share of the thermal resistance between the two.
+            edges = [depth[k], *(edge for edge in layers if depth[k] < edge < depth[k + 1]), depth[k + 1]]
+            resistance = [rig.skin.resistance_to_m2K_per_W(float(edge)) for edge in edges]
+            at = resistance[0] + share * (resistance[-1] - resistance[0])
+            best = Likeness(float(np.interp(at, resistance, edges)), rms)
     return best
-
-
-def _depth_at(rig: Rig, high_m: float, low_m: float, share: float) -> float:
-    """Depth in m at a share of the thermal resistance between two depths."""
-    layers = np.cumsum([layer.thickness_m for layer in rig.skin.layers]).tolist()
-    edges = [high_m, *(edge for edge in layers if high_m < edge < low_m), low_m]
-    resistance = [rig.skin.resistance_to_m2K_per_W(edge) for edge in edges]
-    return float(np.interp(resistance[0] + share * (resistance[-1] - resistance[0]), resistance, edges))

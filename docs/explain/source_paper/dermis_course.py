@@ -28,7 +28,6 @@ def dermis_course() -> DermisCourse:
     rig = emulator_rig()
     dermis = dermis_change(rig)
     depths_m = (*dermis.receptor_m, dermis.depth_of_m(printed().one("dermis change").central))
-    run = probe_depths(cooling_step("skin"), rig, depths_m, tail_s=TAIL_S)
-    away = run.temperature_C - run.temperature_C[:, :1]
+    at_C, trace = probe_depths(cooling_step("skin"), rig, depths_m, tail_s=TAIL_S)
     third = thermistors(rig).trace.probe("3")
-    return DermisCourse(rig.name, run.trace.time_s, np.array(depths_m), away, third - third[0])
+    return DermisCourse(rig.name, trace.time_s, np.array(depths_m), at_C - at_C[:, :1], third - third[0])

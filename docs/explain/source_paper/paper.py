@@ -115,9 +115,9 @@ def thermistors(rig: Rig | None = None, *, lateral_m: float | None = None) -> Th
     probes: list[dict[str, object]] = [{"name": name, "place": place} for name, place in THERMISTORS]
     rig, cue, pad = (rig or emulator_rig()).with_(probe=probes), cooling_step("skin"), Pad.of(lateral_m)
     likeness = resembles(cue, rig, pad, tail_s=TAIL_S)
-    depths = probe_depths(cue, rig, [likeness.depth_m], tail_s=TAIL_S)
-    trace = replace(depths.trace, probes=(*depths.trace.probes, ("3", pad.reads(depths.trace, rig))))
-    return Thermistors(trace, likeness, depths.temperature_C[0], pad.lateral_m)
+    depth_C, trace = probe_depths(cue, rig, [likeness.depth_m], tail_s=TAIL_S)
+    trace = replace(trace, probes=(*trace.probes, ("3", pad.reads(trace, rig))))
+    return Thermistors(trace, likeness, depth_C[0], pad.lateral_m)
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,9 +158,9 @@ def dermis_change(rig: Rig | None = None) -> DermisChange:
     """Play the cue and look at all depths down to 2 mm: how much, and how fast, the tissue cools there."""
     rig = rig or emulator_rig()
     depths = np.linspace(0.0, min(2.0e-3, rig.skin.thickness_m), 201)
-    run = probe_depths(cooling_step("skin"), rig, depths, tail_s=TAIL_S)
-    change = run.temperature_C[:, :1] - run.temperature_C.min(axis=1, keepdims=True)
-    fall = -np.diff(run.temperature_C, axis=1).min(axis=1) / run.trace.time_s[1]
+    at_C, trace = probe_depths(cooling_step("skin"), rig, depths, tail_s=TAIL_S)
+    change = at_C[:, :1] - at_C.min(axis=1, keepdims=True)
+    fall = -np.diff(at_C, axis=1).min(axis=1) / trace.time_s[1]
     return DermisChange(rig.name, depths, change[:, 0], fall, (rig.skin.cold_receptor_m, rig.skin.warm_receptor_m))
 
 

@@ -12,20 +12,8 @@ from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.solver.simulate import simulate
 from thermicon.circuit.solver.steady import steady_state
 
+from . import paper
 from .meshstudy import Mesh, mesh_study
-from .paper import (
-    TAIL_S,
-    ControlledCue,
-    Thermistors,
-    coldest_display_C,
-    controlled_cue,
-    cooling_step,
-    dermis_change,
-    emulator_rig,
-    miss_by_limit,
-    printed,
-    thermistors,
-)
 
 SURFACE_FILM_W_PER_M2K = (8.0, 12.0)
 """Still room air over bare skin; what the standing flux of the printed slab is compared with."""
@@ -56,8 +44,8 @@ def paper_differences() -> tuple[PaperDifference, ...]:
     mesh - differs
     depth of the receptors - differs
     """
-    rig, palm = emulator_rig(), Rig.load("thenar")
-    cue = controlled_cue(rig)
+    rig, palm = paper.emulator_rig(), Rig.load("thenar")
+    cue = paper.controlled_cue(rig)
     return (
         _shape(cue),
         _current(Rig.load(rig.name)),
@@ -83,7 +71,7 @@ def paper_table() -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["claim", "verdict", "paper", "ours", "why"])
 
 
-def _shape(cue: ControlledCue) -> PaperDifference:
+def _shape(cue: paper.ControlledCue) -> PaperDifference:
     wrong = cue.distortions
     return PaperDifference(
         "shape under control",
@@ -98,26 +86,29 @@ def _shape(cue: ControlledCue) -> PaperDifference:
 
 
 def _current(rig: Rig) -> PaperDifference:
-    module_A = printed().one("module current").central
-    misses = miss_by_limit([rig.driver.current_max_A, module_A]).miss_K
+    module_A, coldest_C = (
+        paper.printed().one(name).central for name in ("module current", "lowest contact temperature")
+    )
+    misses = paper.miss_by_limit([rig.driver.current_max_A, module_A]).miss_K
     return PaperDifference(
         "current",
         False,
         "the drive that makes the skin's step is found and played; no limit is given.",
         f"at {rig.driver.current_max_A:g} A the skin misses by {misses[0]:.2f} K, at the module's own {module_A:g} A "
         f"by {misses[1]:.2f} K; {steady_state(rig, 'skin', rig.skin.rest_C)[0]:.2f} A hold it at rest.",
-        f"The limit is derived: with it held the display settles at {coldest_display_C(rig):.1f} °C, and the paper "
-        f"says about {printed().one('lowest contact temperature').central:g} °C at the lowest. A corner in the skin's "
+        f"The limit is derived: with it held the display settles at {paper.coldest_display_C(rig):.1f} °C, and the "
+        f"paper says about {coldest_C:g} °C at the lowest. A corner in the skin's "
         "temperature asks for a current that grows without bound as the corner gets sharper, and the printed slab's "
         "standing flux takes a part of what there is.",
     )
 
 
-def _directions(rig: Rig, cue: ControlledCue) -> PaperDifference:
-    one_way = simulate(cooling_step("skin"), rig.with_(**{"driver.current_min_A": 0}), tail_s=TAIL_S).outcome
+def _directions(rig: Rig, cue: paper.ControlledCue) -> PaperDifference:
+    only_cooling = rig.with_(**{"driver.current_min_A": 0})
+    one_way = simulate(paper.cooling_step("skin"), only_cooling, tail_s=paper.TAIL_S).outcome
     assert one_way is not None
-    hot = printed().one("surface stays below").central
-    warm = simulate(cooling_step("skin"), rig, tail_s=TAIL_S).display_C.max()
+    hot = paper.printed().one("surface stays below").central
+    warm = cue.skin.display_C.max()
     return PaperDifference(
         "directions of current",
         False,
@@ -143,8 +134,8 @@ def _rest(rig: Rig, palm: Rig) -> PaperDifference:
 
 
 def _receptors(rig: Rig) -> PaperDifference:
-    dermis = dermis_change(rig)
-    change_K, rate = printed().one("dermis change").central, printed().one("dermis rate").central
+    dermis = paper.dermis_change(rig)
+    change_K, rate = paper.printed().one("dermis change").central, paper.printed().one("dermis rate").central
     (cold, cold_rate), (warm, warm_rate) = (dermis.at(depth) for depth in dermis.receptor_m)
     return PaperDifference(
         "change at the receptors",
@@ -159,7 +150,7 @@ def _receptors(rig: Rig) -> PaperDifference:
 
 
 def _insulated(rig: Rig) -> PaperDifference:
-    assumed, near = thermistors(rig), _lateral_for(rig, printed().one("dermis change").central)
+    assumed, near = paper.thermistors(rig), _lateral_for(rig, paper.printed().one("dermis change").central)
     moved, other = (abs(float(np.ptp(probe_run.trace.probe("3")))) for probe_run in (assumed, near))
     return PaperDifference(
         "thermistor on insulated skin",
@@ -173,16 +164,16 @@ def _insulated(rig: Rig) -> PaperDifference:
     )
 
 
-def _lateral_for(rig: Rig, change_K: float) -> Thermistors:
+def _lateral_for(rig: Rig, change_K: float) -> paper.Thermistors:
     def over(lateral_m: float) -> float:
-        return float(np.ptp(thermistors(rig, lateral_m=lateral_m).trace.probe("3"))) - change_K
+        return float(np.ptp(paper.thermistors(rig, lateral_m=lateral_m).trace.probe("3"))) - change_K
 
-    return thermistors(rig, lateral_m=float(brentq(over, 0.3e-3, 5e-3, xtol=2e-5)))
+    return paper.thermistors(rig, lateral_m=float(brentq(over, 0.3e-3, 5e-3, xtol=2e-5)))
 
 
 def _mesh(rig: Rig) -> PaperDifference:
     study = mesh_study(
-        rig, cooling_step("display"), way="temperature", meshes=[Mesh("1 + 5", elements=(1, 5)), Mesh("own")]
+        rig, paper.cooling_step("display"), way="temperature", meshes=[Mesh("1 + 5", elements=(1, 5)), Mesh("own")]
     )
     early, late, fine = study.part(0, 0.5), study.part(0, 4.0), np.abs(study.error_K[1]).max() * 1e3
     return PaperDifference(
@@ -198,7 +189,7 @@ def _mesh(rig: Rig) -> PaperDifference:
 
 
 def _depth(palm: Rig) -> PaperDifference:
-    dermis, corneum = dermis_change(palm), palm.skin.layers[0].thickness_m
+    dermis, corneum = paper.dermis_change(palm), palm.skin.layers[0].thickness_m
     surface = [dermis.at(depth)[0] for depth in dermis.receptor_m]
     below = [dermis.at(depth + corneum)[0] for depth in dermis.receptor_m]
     return PaperDifference(
