@@ -10,6 +10,8 @@ from .module import Datasheet, Extraction, Peltier, at_mean_C
 from .rigfile import ModuleTable
 
 COLUMNS = ("module", "origin", "couples", "footprint_mm", "plate_J_per_K", *Datasheet.model_fields)
+SHEET = {"t_hot_C": "hot °C", "i_max_A": "Imax A", "v_max_V": "Vmax V", "q_max_W": "Qmax W", "dt_max_K": "ΔTmax K"}
+FIGURES = ("cm²", "J/K", *SHEET.values())
 ONE_STAGE = 0.03
 """Share by which ΔTmax may miss the printed one: single-stage sheets come within 0.008, a two-stage one has 0.19."""
 LEAST_APART_K = 1.0
@@ -57,7 +59,7 @@ def module_rows() -> list[tuple[str, ...]]:
     rows = []
     for record in module_table():
         name, build = str(record.get("module")), build_of(str(record.get("module")))
-        known = [build.face_cm2, build.plate_J_per_K, *(float(record.get(key)) for key in COLUMNS[5:])]
+        known = [build.face_cm2, build.plate_J_per_K, *(float(record.get(key)) for key in SHEET)]
         rows.append((name, *("–" if each is None else f"{each:g}" for each in known)))
     return sorted(rows)
 

@@ -21,6 +21,14 @@ def test_each_kind_is_listed_within_80_columns(cli: Cli, what: str) -> None:
     assert max(len(line) for line in said.stdout.splitlines()) <= 80
 
 
+def test_the_figures_of_a_module_stand_below_their_names(cli: Cli) -> None:
+    """CP60340 as its data sheet has it: 6 A, 8.6 V, 30 W and 75 K with the hot side at 50 °C."""
+    head, *rows = cli("list", "modules").stdout.splitlines()
+    (row,) = (row for row in rows if row.startswith("CP60340"))
+    assert head.endswith("hot °C   Imax A   Vmax V   Qmax W   ΔTmax K")
+    assert row.split()[-5:] == ["50", "6", "8.6", "30", "75"]
+
+
 @pytest.mark.parametrize(
     ("name", "ending"), [("six-icons", ".cue"), ("forearm", ".toml"), ("dac-16", ".toml"), ("study", ".toml")]
 )
