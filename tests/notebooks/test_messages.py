@@ -33,6 +33,14 @@ def test_a_bar_says_what_is_left_also_where_the_terminal_says_no_width(monkeypat
     assert "7/10" in later and " left" in later.rpartition("7/10")[2] and "?" not in later.rpartition("7/10")[2]
 
 
+def test_several_steps_on_no_terminal_are_lines(capsys: pytest.CaptureFixture[str]) -> None:
+    with progress_bar("simulating", "judging") as advance, progress_bar("ranking") as none:
+        assert advance is not None and none is None
+        for step in ((1, 1), (1, 2), (2, 2)):
+            advance(*step)
+    assert capsys.readouterr().err == "simulating: 1 of 2\nsimulating: 2 of 2; judging …\n"
+
+
 def test_a_study_says_its_plan_before_it_is_judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     told: list[str] = []
 
