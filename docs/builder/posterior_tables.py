@@ -238,13 +238,13 @@ def variants_sentence() -> str:
 def forms_table() -> str:
     """Scores of forms of memory, with the sum of each form."""
     rows, lines = list(read_rows(FORMS, FormScore)), []
-    for norm in dict.fromkeys(one.norm for one in rows):
-        own = [one for one in rows if one.norm == norm]
+    for form in dict.fromkeys(one.norm for one in rows):
+        own = [one for one in rows if one.norm == form]
         for one in own:
             ends = span(one.low, one.high)
-            lines.append((f"`{norm}`", one.row, one.published, number(one.predicted), ends, f"{one.log_score:.1f}"))
+            lines.append((f"`{form}`", one.row, one.published, number(one.predicted), ends, f"{one.log_score:.1f}"))
         total = f"**{sum(one.log_score for one in own):.1f}**"
-        lines.append((f"`{norm}`", "**all rows**", "", "", "", total))
+        lines.append((f"`{form}`", "**all rows**", "", "", "", total))
     return markdown(("memory", "row", "published", "predicted", "95 %", "log score"), lines)
 
 
