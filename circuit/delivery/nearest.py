@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from thermicon.icons import Icon
 from thermicon.icons.model.arguments import checked
@@ -115,9 +116,8 @@ def changed(icon: Icon, base_C: float, *, slower: float = 1.0, smaller: float = 
         if not isinstance(statement, Ramp | Return | Wave | Step | Pulse):
             return statement
         by = factors if isinstance(statement, Step | Pulse) else factors | slowed
-        new = {
-            name: float(f"{by[name] * old:.6g}") for name in by if (old := getattr(statement, name, None)) is not None
-        }
+        held = {name: old for name in by if (old := getattr(statement, name, None)) is not None}
+        new: dict[str, Any] = {name: float(f"{by[name] * old:.6g}") for name, old in held.items()}
         if (level := getattr(statement, "to_C", None)) is not None:
             new["to_C"] = float(f"{base_C + smaller * (level - base_C):.6g}")
         return replace(statement, **new)
