@@ -70,7 +70,7 @@ def nearest_reachable(icon: Icon, rig: AnyRig = None) -> Nearest | None:
     >>> from thermicon.icons import load_library
     >>> cue = load_library("cooling-step-skin").icons[0]
     >>> nearest_reachable(cue, Rig.load("thenar").with_(**{"driver.current_limit_A": 1.0})).sentence
-    'it is reached with its changes 0.8 times as large, in the same time: cool by 8 °C at 4 °C/s → ...'
+    'it is reached with its changes 0.8 times as large, in the same time: cool by 6 °C at 3 °C/s → ...'
     """
     on = Rig.of(rig, icon.context.site)
     if icon.context.control == "current" or _reached(icon, on):
