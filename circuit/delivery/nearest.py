@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from thermicon.icons import Icon
 from thermicon.icons.model.arguments import checked
@@ -69,7 +70,7 @@ def nearest_reachable(icon: Icon, rig: AnyRig = None) -> Nearest | None:
     >>> from thermicon.icons import load_library
     >>> cue = load_library("cooling-step-skin").icons[0]
     >>> nearest_reachable(cue, Rig.load("thenar").with_(**{"driver.current_limit_A": 1.0})).sentence
-    'it is reached with its changes 0.8 times as large, in the same time: cool by 8 °C at 4 °C/s → ...'
+    'it is reached with its changes 0.8 times as large, in the same time: cool by 6 °C at 3 °C/s → ...'
     """
     on = Rig.of(rig, icon.context.site)
     if icon.context.control == "current" or _reached(icon, on):
@@ -115,9 +116,8 @@ def changed(icon: Icon, base_C: float, *, slower: float = 1.0, smaller: float = 
         if not isinstance(statement, Ramp | Return | Wave | Step | Pulse):
             return statement
         by = factors if isinstance(statement, Step | Pulse) else factors | slowed
-        new = {
-            name: float(f"{by[name] * old:.6g}") for name in by if (old := getattr(statement, name, None)) is not None
-        }
+        held = {name: old for name in by if (old := getattr(statement, name, None)) is not None}
+        new: dict[str, Any] = {name: float(f"{by[name] * old:.6g}") for name, old in held.items()}
         if (level := getattr(statement, "to_C", None)) is not None:
             new["to_C"] = float(f"{base_C + smaller * (level - base_C):.6g}")
         return replace(statement, **new)

@@ -100,8 +100,8 @@ def restate(document: dict[str, Any], keys: Iterable[str]) -> None:
         if (place := table.removeprefix("skin.layer.")).isdecimal():
             table = f"skin.layer.{document['skin']['layer'][int(place)]['name']}"
         if table in said:
-            said[table] += f"; {name} is set by --set"
-        said[table + dot + name] = "set by --set"
+            said[table] += f"; {name} is changed"
+        said[table + dot + name] = f"changed, not as in rig {document['name']}"
     if keys and "title" not in keys:
         document["title"] = f"{document['name']} with other {', '.join(keys)}"
 

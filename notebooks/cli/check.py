@@ -11,10 +11,11 @@ import typer
 
 from thermicon.icons.atomic import OutputError, complete_or_absent
 from thermicon.icons.number_text import number, span
+from thermicon.perception.criteria import MOST_ICONS
 
 from ..files.outputs import check_output
 from ..messages import MissingArgument, fail, note, usage
-from .options import MOST_ICONS, command_text, flag, opt, site_meant
+from .options import command_text, flag, opt, site_meant
 
 if TYPE_CHECKING:
     from thermicon.icons import IconSet

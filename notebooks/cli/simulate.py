@@ -169,8 +169,8 @@ def simulate_file(
     near = [None if one.reachable else nearest_reachable(each, rig) for each, one in zip(icons, traces, strict=True)]
     tell(traces, rig, output, [None if found is None else found.sentence for found in near])
     if output is None:
-        lost = [one.icon for one in traces if not (one.reachable and judge_safety(one).safe)]
-        cured = [one.icon for one, found in zip(traces, near, strict=True) if found is not None]
+        lost = [str(one.icon) for one in traces if not (one.reachable and judge_safety(one).safe)]
+        cured = [str(one.icon) for one, found in zip(traces, near, strict=True) if found is not None]
         typer.echo(f"Next: {after_simulating(cured, lost, commands([file], asked, CrowdOptions()))}")
     for each, picture in zip(icons, pictures, strict=False):
         played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import listed
@@ -45,7 +45,7 @@ def after_ranking(found: SetReport, command: Command, cures: Mapping[str, str] |
     return command("export", *PLAYED)
 
 
-def after_simulating(cured: Sequence[str], lost: Sequence[str], command: Command) -> str:
+def after_simulating(cured: list[str], lost: list[str], command: Command) -> str:
     """To rank what is played as written; otherwise to change the icons that have a cure, or are lost."""
     if not lost:
         return command("rank")

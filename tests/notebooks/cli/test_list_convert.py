@@ -56,7 +56,7 @@ def test_a_set_is_written_as_json_and_as_cue_text_over_what_was_there(cli: Cli, 
     as_json.write_text("old")
     said = cli("convert", "six-icons", "-o", as_json)
     assert (said.exit_code, said.stdout) == (0, "")
-    assert said.stderr == f"wrote {as_json}: 6 icons\n"
+    assert said.stderr == f"wrote {as_json}: 6 icons (replaced what was there)\n"
     assert as_json.read_text(encoding="utf-8") == to_json(load_library("six-icons"))
     cli.good("convert", "six-icons", "-o", as_cue)
     assert as_cue.read_text(encoding="utf-8") == str(load_library("six-icons"))

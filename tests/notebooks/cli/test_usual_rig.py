@@ -51,7 +51,11 @@ def test_a_copy_of_a_rig_with_changes_is_called_by_its_file(cli: Cli, tmp_path: 
     cli.good("list", "--copy", "fingertip", copy, "--set", "module.name=TEC1-12706", "--set", "contact.area_cm2=2")
     rig, said = Rig.load(copy), tomllib.loads(copy.read_text(encoding="utf-8"))
     assert (said["title"], "module" in said["source"]) == ("fingertip with other module.name, contact.area_cm2", False)
-    assert said["source"]["contact.area_cm2"] == "set by --set" != said["source"]["contact.resistance_m2K_per_W"]
+    assert (
+        said["source"]["contact.area_cm2"]
+        == "changed, not as in rig fingertip"
+        != said["source"]["contact.resistance_m2K_per_W"]
+    )
     assert (rig.name, rig.site, round(1e4 * rig.contact.area_m2, 6)) == ("hand", "fingertip", 2.0)
     assert "hand.toml already exists" in cli("list", "--copy", "fingertip", copy, "--set", "contact.area_cm2=3").stderr
     assert "six-icons is none" in cli("list", "--copy", "six-icons", tmp_path / "a.cue", "--set", "a.b=3").stderr
