@@ -1,7 +1,6 @@
 """The catalogue of errors: what every code means, a file that causes it with the message, and a corrected file."""
 
 from dataclasses import dataclass
-from functools import cache
 
 from ..language.parse import parse
 from ..model.errors import CueErrors, codes
@@ -28,7 +27,6 @@ class Entry:
         raise ValueError(f"{self.code}: nothing is wrong with its example")
 
 
-@cache
 def catalogue() -> dict[str, Entry]:
     """Return the entries by code, in the order of the codes."""
     return {code: Entry(code, **values) for code, values in sorted(codes().items())}

@@ -10,7 +10,6 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.model.arguments import InputError, checked
@@ -201,7 +200,6 @@ def _same(one: GoalPart, other: GoalPart) -> str:
     return f"{one.text!r} and {other.text!r} limit the same quantity: keep the stricter, {kept.text!r}"
 
 
-@lru_cache(maxsize=1)
 def _parser() -> Lark:
     from lark import Lark
 
