@@ -5,7 +5,7 @@ Nothing is decided here and nothing that decides imports this module: it is load
 
 import tomllib
 from collections.abc import Sequence
-from functools import cache, lru_cache
+from functools import cache
 from importlib import resources
 from math import isnan
 from typing import Any
@@ -43,7 +43,6 @@ BEFORE = {
 NO_LIMIT = "no limit is passed"
 
 
-@lru_cache(maxsize=4096)
 def corner_text(deviations: tuple[float, ...]) -> str:
     """Deviations of a rig, in the order of WORDS, as in contact −30 %, gain +10 %."""
     parts = zip(deviations, WORDS.values(), strict=True)

@@ -1,7 +1,6 @@
 """The catalogue of error codes: meaning, an example with its message, a corrected example."""
 
 from dataclasses import dataclass
-from functools import cache
 from textwrap import indent
 
 from ..language.parse import parse
@@ -29,7 +28,6 @@ class Entry:
         raise ValueError(f"{self.code}: nothing is wrong with its example")
 
 
-@cache
 def catalogue() -> dict[str, Entry]:
     """Return the entries by code, in the order of the codes."""
     return {code: Entry(code, **values) for code, values in sorted(codes().items())}

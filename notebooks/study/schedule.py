@@ -8,7 +8,6 @@ import io
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from importlib import resources
 from typing import Any
 
@@ -164,7 +163,6 @@ def json_bytes(content: object) -> bytes:
     return (json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode("utf-8")
 
 
-@lru_cache(maxsize=1)
 def event_columns() -> dict[str, dict[str, Any]]:
     """The meaning of each column of a table of events, as BIDS describes it."""
     text = resources.files("thermicon.notebooks").joinpath("data", "study-events.json").read_text(encoding="utf-8")

@@ -111,7 +111,6 @@ class AblatedRow:
     sources: str
 
 
-@lru_cache(maxsize=4)
 def load_constants(variable: Variable = "temperature") -> tuple[Constant, ...]:
     """Constants of a variant at its maximum."""
     return tuple(row for row in read_rows(CONSTANTS, Constant) if row.variable == variable)
@@ -138,7 +137,6 @@ def median_half_width(*, log: bool) -> float:
     return median(each.half_width for each in judging_predictions() if each.log == log)
 
 
-@lru_cache(maxsize=1)
 def load_ablation() -> tuple[AblatedRow, ...]:
     """The worth of each mechanism."""
     return tuple(read_rows(ABLATION, AblatedRow))

@@ -5,7 +5,6 @@ Published numbers themselves come from the table of thresholds alone.
 
 import tomllib
 from dataclasses import dataclass
-from functools import lru_cache
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
@@ -109,7 +108,6 @@ class Target:
     rows: tuple[TargetRow, ...]
 
 
-@lru_cache(maxsize=1)
 def load_targets() -> tuple[Target, ...]:
     """The shipped targets in the order of their numbers.
 

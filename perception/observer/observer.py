@@ -173,7 +173,6 @@ def read_records(path: Path) -> RecordTable:
     return table
 
 
-@lru_cache(maxsize=4)
 def variant_records(variable: Variable = "temperature") -> RecordTable:
     """The shipped records without those of other variants: all that an observer of this variant makes use of."""
     variant = source_of(variable)

@@ -10,7 +10,6 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.model.arguments import InputError, checked
@@ -197,7 +196,6 @@ class Goal:
         return f"Goal({self.text})"
 
 
-@lru_cache(maxsize=1)
 def _parser() -> Lark:
     from lark import Lark
 
