@@ -54,7 +54,7 @@ def fits(device: Device) -> None:
     if device.dc_coupled:
         raise FormatError(
             f"psychopy: neither its player nor a study plays on a sound interface such as {device.name}; use "
-            f"ni-analogue-output, closed-loop-controller or qst-tcs2, or play the files of export --to wav yourself"
+            f"ni-analogue-output, closed-loop-controller or qst-tcs2, or export wav and play the files yourself"
         )
 
 

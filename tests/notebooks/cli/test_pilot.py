@@ -81,7 +81,7 @@ def test_trials_without_an_answer_and_counts_of_a_group_are_said(cli: Cli, two: 
     assert (sum(own["unanswered"]), sum(map(sum, own["counts"])), own["trials"]) == (2, 23, 25)
     assert (own["rows_passed_over"], own["one_group"], own["each"][1]["unanswered"]) == (1, False, 1)
     path.write_text("shown,warm-step,cool-step\nwarm-step,20,4\ncool-step,5,19\n")
-    words = told(cli("pilot", two, "--answers", path, *QUICK, "--json", out), "Counts of one group say nothing of")
+    words = told(cli("pilot", two, "--answers", path, *QUICK, "--json", out), "Counts of one group do not show")
     assert "all 48 81 %" in words and "no answer" not in words
     assert json.loads(out.read_text(encoding="utf-8"))["one_group"]
 
