@@ -13,6 +13,7 @@ from scipy.signal import lfilter
 from tests.circuit.delivery.one_drive import icon_of, prepare, worst_case
 from tests.circuit.delivery.replay import Skin
 from thermicon.circuit import Device, Drive, Rig, gate, simulate_current
+from thermicon.circuit.delivery.controlled import _rest_s as rest_s
 from thermicon.circuit.delivery.controlled import samples_of
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
@@ -24,6 +25,7 @@ from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.checks import worst_of
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay, checks_of_lanes
+from thermicon.circuit.safety.display import DisplayPlant
 from thermicon.circuit.safety.ensemble import Ensemble, LaneDrives
 from thermicon.circuit.safety.gate import Gate, gate_set
 from thermicon.circuit.safety.plant import Single
@@ -247,3 +249,11 @@ def test_the_cut_off_has_room_for_a_display_without_power_and_the_rest_is_held()
     assert cut["low"] < unpowered < cut["high"] < 43.0
     assert 10.0 < demands["rest_before_first_play_s"] < 600.0
     assert any("without power" in fault["fault"] for fault in demands["faults"])
+
+
+def test_the_rest_before_a_first_play_is_that_of_the_start_that_is_farthest_away() -> None:
+    delivery = by_controller("cool by 2 °C at 2 °C/s", RIG)
+    under = DisplayPlant.of(RIG, delivery.device.interval("set-point range"))
+    near, far, both = (rest_s(under, delivery, ends_C) for ends_C in ((33.0, 33.0), (41.0, 41.0), (33.0, 41.0)))
+    assert near is not None and far is not None
+    assert near < far == both

@@ -84,6 +84,7 @@ def test_rows_are_independent_and_keep_their_shape(observer: Observer) -> None:
     assert np.array_equal(together[1, 7], observer.drive(many[1, 7], 0.01, "cold"))
     with pytest.raises(ValueError, match=r"at least two samples on its last axis, not shape \(3, 1\)"):
         observer.drive(np.zeros((3, 1)), 0.01, "cold")
+    assert observer.drive(many[:, 0, :2], 0.01, "cold").shape == (3, 2)
 
 
 @pytest.mark.parametrize(("channel", "unit"), [("cold", 0.08), ("warm", 0.15)])
