@@ -63,12 +63,12 @@ class Trials:
     @property
     def pooled(self) -> Array:
         """Answers of all participants together (icons, icons)."""
-        return self.counts.sum(axis=0)
+        return np.asarray(self.counts.sum(axis=0))
 
     @property
     def presented(self) -> Array:
         """How often each participant was presented each icon (participants, icons)."""
-        return self.counts.sum(axis=2) + self.unanswered
+        return np.asarray(self.counts.sum(axis=2) + self.unanswered)
 
     @property
     def total(self) -> int:
