@@ -133,8 +133,7 @@ def trace_of_display(
         target_C=target_C,
         hot_plate_C=nothing.copy(),
         probes=tuple((name, _at(rows, times, row)) for name, row in probes),
-        **of_rig(rig),
-        **felt,
+        **(of_rig(rig) | felt),
     )
 
 

@@ -212,8 +212,7 @@ def _trace(
         voltage_V=voltage,
         target_C=target,
         probes=own_probes,
-        **of_rig(rig),
-        **values,
+        **(of_rig(rig) | values),
     )
 
 

@@ -108,9 +108,10 @@ class ShownSet:
         invited = others.invited(len(few))
 
         def drawn(k: int) -> Array:
-            return confusions(thin, *others.at(k, len(few)), FEW_SAMPLES)[invited[k]]
+            return np.asarray(confusions(thin, *others.at(k, len(few)), FEW_SAMPLES)[invited[k]])
 
-        kept = np.array(list(in_order(drawn, range(draws))))
+        each = list(in_order(drawn, range(draws)))
+        kept = np.stack(each) if each else np.zeros((0, *whole.shape))
         alone = confusions(thin, nominal, few, FEW_SAMPLES)
         return VariantConfusions(variable, labels, whole, alone, kept, self.baseline)
 

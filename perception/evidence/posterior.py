@@ -84,7 +84,7 @@ class Posterior:
         """Misses of all rows, left out or not, in their SDs."""
         predictions = self.predictions(vector)
         missed = np.array([(predictions[row.key] - row.value) / row.sd for row in load_rows()])
-        return np.clip(np.nan_to_num(missed, nan=FARTHEST), -FARTHEST, FARTHEST)
+        return np.asarray(np.clip(np.nan_to_num(missed, nan=FARTHEST), -FARTHEST, FARTHEST))
 
 
 STEP = 0.04

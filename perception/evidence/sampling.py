@@ -162,4 +162,4 @@ def in_the_middle(posterior: Posterior, vectors: Array) -> int:
 def _off_centre(each: Array) -> Array:
     """Mean square (draws,) of how many SDs a draw lies from the median of each column."""
     spread = np.where(each.std(axis=0) > 0.0, each.std(axis=0), 1.0)
-    return np.square((each - np.median(each, axis=0)) / spread).mean(axis=1)
+    return np.asarray(np.square((each - np.median(each, axis=0)) / spread).mean(axis=1))

@@ -157,4 +157,4 @@ class LimitFeatures:
             self.middle[k] + self.sd[k] * vectors[..., place] for k, place in enumerate(self.places)
         )
         away = [cold - at for at in COLD_C] + [at - warm for at in WARM_C]
-        return np.stack(away, axis=-1) / np.exp(log_softness)[..., None]
+        return np.asarray(np.stack(away, axis=-1) / np.exp(log_softness)[..., None])

@@ -30,4 +30,4 @@ def between(depths_m: Sequence[float], rungs_C: Array, at_m: Array) -> Array:
     for k, own in enumerate(depths_m):
         for other in (*depths_m[:k], *depths_m[k + 1 :]):
             weights[k] *= (at_m - other) / (own - other)
-    return np.einsum("kp,kpit->pit", weights, rungs_C)
+    return np.asarray(np.einsum("kp,kpit->pit", weights, rungs_C))

@@ -161,7 +161,7 @@ class Namings:
 
     def log_likelihood(self, simulated: Confusions) -> Array:
         """Ln likelihood (laboratories,) of all answers, each participant integrated over people."""
-        return log_likelihoods(simulated.probability, self.trials.counts).sum(axis=1)
+        return np.asarray(log_likelihoods(simulated.probability, self.trials.counts).sum(axis=1))
 
     def polynomial(self, place: Array, simulated: Confusions, short: Array) -> Callable[[Array], Array]:
         """Ln likelihood of the pooled answers."""

@@ -120,4 +120,4 @@ def off_middle(values: Array) -> Array:
     values = np.where(positive, np.log(np.where(positive, values, 1.0)), values)
     spread = values.std(axis=0)
     off = np.divide(values - np.median(values, axis=0), spread, out=np.zeros_like(values), where=spread > 0.0)
-    return np.square(off).mean(axis=1)
+    return np.asarray(np.square(off).mean(axis=1))

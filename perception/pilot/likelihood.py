@@ -45,13 +45,13 @@ def log_likelihoods(probability: Small, counts: Array) -> Array:
         part = probability[start : start + rows].reshape(-1, probability.shape[-1] ** 2)[:, used]
         each[start : start + rows] = (np.log(part, dtype=np.float64) @ answers).reshape(-1, people, len(counts))
     largest = each.max(axis=1)
-    return largest + np.log(np.exp(each - largest[:, None]).mean(axis=1))
+    return np.asarray(largest + np.log(np.exp(each - largest[:, None]).mean(axis=1)))
 
 
 def normalised_weights(log_weights: Array) -> Array:
     """Weights that add up to 1, from their logarithms."""
     own = np.exp(log_weights - log_weights.max())
-    return own / own.sum()
+    return np.asarray(own / own.sum())
 
 
 def effective(weights: Array) -> float:
@@ -102,7 +102,7 @@ class PooledLikelihood:
     def __call__(self, place: Array) -> Array:
         """Ln likelihood (n,) at coordinates (n, d), up to a constant."""
         off = self.observed - features_of(place, self.pairs) @ self.coefficients
-        return -0.5 * (np.square(off) / self.variance).sum(axis=1)
+        return np.asarray(-0.5 * (np.square(off) / self.variance).sum(axis=1))
 
 
 def walk(start: Array, target: Callable[[Array], Array], rng: np.random.Generator) -> Array:
@@ -146,7 +146,7 @@ def _people_share(played: Confusions, shown: Array, root: Array, turned: Array, 
     total = np.repeat(shown.sum(axis=0), shown.shape[1])
     each = played.probability.reshape(*played.probability.shape[:2], -1).astype(np.float64)
     along = ((each - each.mean(axis=1, keepdims=True)) * total) @ np.linalg.solve(root, np.eye(len(root))).T @ turned
-    return weight @ np.square(along).mean(axis=1) / len(weight) / (each.shape[1] - 1)
+    return np.asarray(weight @ np.square(along).mean(axis=1) / len(weight) / (each.shape[1] - 1))
 
 
 def smooth_features(place: Array, values: Array, weight: Array) -> tuple[Array, tuple[tuple[int, int], ...], Array]:

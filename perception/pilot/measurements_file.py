@@ -99,7 +99,7 @@ class Measurements:
     @property
     def means(self) -> Array:
         """Geometric mean over participants (conditions,)."""
-        return np.exp(np.nanmean(np.log(self.values), axis=0))
+        return np.asarray(np.exp(np.nanmean(np.log(self.values), axis=0)))
 
     @property
     def assumed_errors(self) -> int:

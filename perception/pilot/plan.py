@@ -256,4 +256,4 @@ def _shares(
     shown = np.full(chances.shape, trials // icons)
     if rest := trials % icons:
         shown += rng.random(chances.shape).argsort(axis=-1) < rest
-    return rng.binomial(shown, np.minimum(chances, 1.0)).sum(axis=-1) / trials
+    return np.asarray(rng.binomial(shown, np.minimum(chances, 1.0)).sum(axis=-1) / trials)

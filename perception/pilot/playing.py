@@ -54,7 +54,7 @@ class Confusions:
     @property
     def pooled(self) -> Array:
         """Mean over people (laboratories, icons, icons)."""
-        return self.probability.mean(axis=1, dtype=np.float64)
+        return np.asarray(self.probability.mean(axis=1, dtype=np.float64))
 
     def of(self, which: NDArray[np.int64]) -> Confusions:
         """Those of some laboratories."""

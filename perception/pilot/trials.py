@@ -63,12 +63,12 @@ class Trials:
     @property
     def pooled(self) -> Array:
         """Answers of all participants together (icons, icons)."""
-        return self.counts.sum(axis=0)
+        return np.asarray(self.counts.sum(axis=0))
 
     @property
     def presented(self) -> Array:
         """Number of presentations to each participant of each icon (participants, icons)."""
-        return self.counts.sum(axis=2) + self.unanswered
+        return np.asarray(self.counts.sum(axis=2) + self.unanswered)
 
     @property
     def total(self) -> int:

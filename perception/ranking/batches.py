@@ -262,7 +262,7 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
         return np.concatenate([getattr(part, name) for part in ordered])
 
     # In order, so that the sums do not depend on which batch was ready first.
-    mean = normalised(sum(part.confusion for part in ordered) / job.people)
+    mean = normalised(np.asarray(sum(part.confusion for part in ordered)) / job.people)
     reports = np.asarray(sum(part.reported[0] for part in ordered))
     return PooledResult(
         detection=pooled_detection(joined("detected"), joined("cold_share"), reports, report_step(DT_S)),

@@ -165,8 +165,8 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
         if parted >= wanted and not harmed and parse(str(one.icon))[one.icon.name].statements == one.icon.statements:
             people = ranking.crowd.but(people=min(ranking.people, MOST_RECOUNTED))
             sets = job.icons, _edited(ranking, one)
-            now, then = (appraise(each, job.rig, crowd=people, task=job.task).proportion_correct for each in sets)
-            gain = then - now
+            old, new = (appraise(each, job.rig, crowd=people, task=job.task).proportion_correct for each in sets)
+            gain = new - old
             if gain <= ROUNDING:
                 return NoEdit(
                     f"separating them changes the proportion correct of the set by {100 * gain:+.1f} points only"
@@ -223,7 +223,14 @@ def _edited(ranking: Ranking, one: CandidateEdit) -> list[Icon]:
 def _recounted(ranking: Ranking, one: CandidateEdit, crowd: People, end_s: float) -> float:
     """Share of the first people whose number of episodes of the icon changes with the edit."""
     job, few = ranking.job, crowd.part(0, min(len(crowd), MOST_RECOUNTED))
-    both, how = [job.icons[one.place], one.icon], (job.rig, few, job.tracking)
-    felt, _ = population_response(both, *how, rate_Hz=POOL_HZ, end_s=end_s, observer=ranking.model.nominal)
+    felt, _ = population_response(
+        [job.icons[one.place], one.icon],
+        job.rig,
+        few,
+        job.tracking,
+        rate_Hz=POOL_HZ,
+        end_s=end_s,
+        observer=ranking.model.nominal,
+    )
     before, after = felt.episodes.counts.T
     return float((before != after).mean())

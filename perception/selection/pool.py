@@ -64,8 +64,14 @@ class Pool:
         traces = simulate_all(padded, rig, end_s=end, rate_Hz=rate_Hz)[: len(icons)]
         dt, _ = uniform_clock(traces[0].time_s)
         at_cold, at_warm = zip(*(received(trace, observer) for trace in traces), strict=True)
-        met, area_m2 = (np.array(at_cold), np.array(at_warm)), rig.contact.area_m2
-        cold, warm = perceive_many(*met, dt, observer, area_m2=area_m2, site=rig.site)
+        cold, warm = perceive_many(
+            np.array(at_cold),
+            np.array(at_warm),
+            dt,
+            observer,
+            area_m2=rig.contact.area_m2,
+            site=rig.site,
+        )
         return cls(tuple(icons), rig, end, tuple(traces), durations, cold, warm, dt)
 
     def __len__(self) -> int:
@@ -74,9 +80,14 @@ class Pool:
     def some(self, places: Sequence[int]) -> Pool:
         """The icons at some places."""
         at = list(places)
-        icons, traces = (tuple(each[k] for k in at) for each in (self.icons, self.traces))
-        felt = {name: getattr(self, name)[at] for name in ("durations_s", "cold", "warm")}
-        return replace(self, icons=icons, traces=traces, **felt)
+        return replace(
+            self,
+            icons=tuple(self.icons[k] for k in at),
+            traces=tuple(self.traces[k] for k in at),
+            durations_s=self.durations_s[at],
+            cold=self.cold[at],
+            warm=self.warm[at],
+        )
 
     @property
     def energies_J(self) -> Array:
