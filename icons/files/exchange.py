@@ -56,7 +56,8 @@ def _icon(entry: Icon | Family) -> dict[str, Any]:
     body = [_statement(part, holes, entry, (n,)) for n, part in enumerate(entry.template)]
     parameters = []
     for own in entry.parameters:
-        values = dict(zip(("low", "high", "step"), own.span or (), strict=False)) or {"values": list(own.listed)}
+        values: dict[str, Any] = dict(zip(("low", "high", "step"), own.span or (), strict=False))
+        values = values or {"values": list(own.listed)}
         parameters.append(_given({"name": own.name, "unit": own.unit or None, **values}))
     return _given({**head, "parameters": parameters, "statements": body})
 

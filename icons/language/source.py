@@ -158,24 +158,25 @@ def decode(data: str | bytes, file: str) -> str:
     size = len(data)
     if size > MOST_BYTES:
         raise whole_file("E004", file, f"{size:,} bytes", f"a cue file has at most {MOST_BYTES:,} bytes; split the set")
-    for mark, kind in _OTHERS.items() if isinstance(data, bytes) else ():
-        if data.startswith(mark):
-            raise whole_file("E006", file, f"this is {kind}", "a cue file is plain UTF-8 text")
-    if isinstance(data, bytes) and b"\0" in data:
-        what = f"a zero byte at byte offset {data.index(0)}"
-        raise whole_file("E006", file, what, "a cue file is plain UTF-8 text, not UTF-16 and not a document")
-    try:
-        text = data if isinstance(data, str) else data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        line = error.object.count(b"\n", 0, error.start) + 1
-        what = f"byte 0x{error.object[error.start]:02X} at byte offset {error.start}, on line {line}, is not UTF-8"
-        raise whole_file("E007", file, what, "save the file as UTF-8 in your editor") from None
-    if "\0" in text:
-        line = text.count("\n", 0, text.index("\0")) + 1
+    if isinstance(data, bytes):
+        for mark, kind in _OTHERS.items():
+            if data.startswith(mark):
+                raise whole_file("E006", file, f"this is {kind}", "a cue file is plain UTF-8 text")
+        if b"\0" in data:
+            what = f"a zero byte at byte offset {data.index(0)}"
+            raise whole_file("E006", file, what, "a cue file is plain UTF-8 text, not UTF-16 and not a document")
+        try:
+            data = data.decode("utf-8")
+        except UnicodeDecodeError as error:
+            line = error.object.count(b"\n", 0, error.start) + 1
+            what = f"byte 0x{error.object[error.start]:02X} at byte offset {error.start}, on line {line}, is not UTF-8"
+            raise whole_file("E007", file, what, "save the file as UTF-8 in your editor") from None
+    if "\0" in data:
+        line = data.count("\n", 0, data.index("\0")) + 1
         raise whole_file("E006", file, f"a zero byte is on line {line}", "a cue file is plain UTF-8 text")
-    if any("\ud800" <= char <= "\udfff" for char in text):
+    if any("\ud800" <= char <= "\udfff" for char in data):
         raise whole_file("E007", file, "half a character (a lone surrogate) in the text", "save the file as UTF-8")
-    text = text.removeprefix("\ufeff")
+    text = data.removeprefix("\ufeff")
     if not text.strip():
         raise whole_file("E005", file, "nothing but white space", 'a cue file begins with "cue 1" and holds icons')
     return text

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import textwrap
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy
 
@@ -126,8 +126,8 @@ def felt_overview(trace: Trace, rig_changes: Sequence[str] = ()) -> Figure:
     steps = numpy.diff(trace.time_s)
     if len(steps) > 1 and abs(steps[-1] - steps[0]) >= 1e-6 * steps[0]:
         # The last row comes off the beat, as when a drive ends between two rows.
-        columns = {field.name: getattr(trace, field.name) for field in dataclasses.fields(trace)}
-        cut = {name: column[:-1] for name, column in columns.items() if isinstance(column, numpy.ndarray)}
+        columns = ((field.name, getattr(trace, field.name)) for field in dataclasses.fields(trace))
+        cut: dict[str, Any] = {name: each[:-1] for name, each in columns if isinstance(each, numpy.ndarray)}
         trace = dataclasses.replace(trace, **cut)
     return overview(trace, perceive(trace), rig_changes)
 

@@ -170,7 +170,7 @@ def _resize(figure: Any) -> None:
     for text in figure.findobj(Text):
         text.set_fontsize(_printed_pt(float(text.get_fontsize())))
         if isinstance(text, Annotation) and text.anncoords == "offset points":
-            text.xyann = tuple(TYPE_PT / 10.0 * part for part in text.xyann)
+            text.xyann = tuple(TYPE_PT / 10.0 * part for part in text.xyann)  # type: ignore[assignment]
     for line in figure.findobj(Line2D):
         line.set_linewidth(THINNER * float(line.get_linewidth()))
         line.set_markersize(THINNER * float(line.get_markersize()))

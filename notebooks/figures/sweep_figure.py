@@ -103,16 +103,11 @@ def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
     alike = f"the same at all values: {'; '.join(label.partition(' (')[0] for label in same)}" * bool(same)
     # Print is wrapped anew for its letters.
     below = textwrap.wrap(alike, int(11 * figure.get_figwidth()) if look is SCREEN else len(alike) + 1)
-    figure.supxlabel("\n".join([key_label(key), *below]), fontsize=10)
-    return figure
-
-
-def key_label(key: str) -> str:
-    """The key in words with its unit; an age is in years."""
     unit = "years" if key.endswith("_years") else unit_of(key)
     words = name_of(key).removesuffix("_years").replace(".", " ").replace("_", " ")
     words = words.replace("seebeck", "Seebeck coefficient")
-    return f"{words} ({unit})" if unit else words
+    figure.supxlabel("\n".join([f"{words} ({unit})" if unit else words, *below]), fontsize=10)
+    return figure
 
 
 def _same(frame: pd.DataFrame, columns: tuple[str, ...]) -> bool:

@@ -85,7 +85,13 @@ def read_curves(path: str, icon: str | None = None, theirs: Mapping[str, str] | 
     if not known:
         raise missing(table, "display_C", "or another one of a trace, such as skin_C")
     if "icon" in table.header:
-        rows = _rows_of(list(table.texts("icon")), path, icon)
+        cells = list(table.texts("icon"))
+        names = list(dict.fromkeys(cells))
+        if icon is None and len(names) > 1:
+            raise usage(f"{path} has traces of {len(names)} icons; name one of {', '.join(names)}", "--icon")
+        if icon is not None and icon not in names:
+            raise TraceFileError(f"{path}: no trace of {icon}; {did_you_mean(icon, names)}")
+        rows = [row for row, name in enumerate(cells) if icon in (None, name)]
         kept = tuple(table.rows[row] for row in rows), tuple(table.lines[row] for row in rows)
         table = replace(table, rows=kept[0], lines=kept[1])
     whole = all(name in table.header and name not in table.names.renamed for name in COLUMNS[1:])
@@ -93,15 +99,6 @@ def read_curves(path: str, icon: str | None = None, theirs: Mapping[str, str] | 
     ignored = [name for name in table.header if name and name not in (*COLUMNS, *known)][:8]
     notes = [f"ignored columns that no trace has: {', '.join(ignored)}"] if ignored else []
     return Curves(where.name, found.time_s, found.columns, whole, (*found.notes, *notes))
-
-
-def _rows_of(icons: list[str], path: str, icon: str | None) -> list[int]:
-    names = list(dict.fromkeys(icons))
-    if icon is None and len(names) > 1:
-        raise usage(f"{path} has traces of {len(names)} icons; name one of {', '.join(names)}", "--icon")
-    if icon is not None and icon not in names:
-        raise TraceFileError(f"{path}: no trace of {icon}; {did_you_mean(icon, names)}")
-    return [row for row, name in enumerate(icons) if icon in (None, name)]
 
 
 def align(a: Curves, b: Curves) -> Aligned:

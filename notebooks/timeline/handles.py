@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import islice
 from typing import TYPE_CHECKING, Any, Literal
 
 from thermicon.icons import Family, Icon
@@ -88,7 +87,16 @@ def handles_of(icon: Icon, family: Family | None = None, start: float | None = N
 
 def corners_of(icon: Icon, start: float | None = None) -> tuple[IconCorner, ...]:
     """Return the corners that handles stand for, in the order in which they are played."""
-    return tuple(islice(_walk(icon, rest_level(icon.context, start)), MOST_HANDLES))
+    time, level = Fraction(0), (rest := rest_level(icon.context, start))
+    found: list[IconCorner] = []
+    for leaf, path, played, line in _leaves(icon.statements, (), None, 0):
+        for part, after, to in _parts(leaf, level, rest):
+            found.append(IconCorner(leaf, part, path, played, line, time, level, time + after, to))
+        if len(found) >= MOST_HANDLES:
+            break
+        level, took = advance(leaf, level, rest)
+        time += took
+    return tuple(found[:MOST_HANDLES])
 
 
 def slots_of(family: Family | None) -> dict[tuple[Path, str], str]:
@@ -146,15 +154,6 @@ def _fields(leaf: Leaf, part: Part) -> tuple[str | None, str | None, str | None]
             ends = "where it began" if not leaf.cut else "where its period is cut"
             return "duration_s", None, f"a wave ends {ends}: move its first peak"
     return None, None, "this moves nothing"
-
-
-def _walk(icon: Icon, rest: Fraction) -> Iterator[IconCorner]:
-    time, level = Fraction(0), rest
-    for leaf, path, played, line in _leaves(icon.statements, (), None, 0):
-        for part, after, to in _parts(leaf, level, rest):
-            yield IconCorner(leaf, part, path, played, line, time, level, time + after, to)
-        level, took = advance(leaf, level, rest)
-        time += took
 
 
 def _leaves(
