@@ -292,6 +292,13 @@ class Demands:
     current_limit_A: tuple[float, float] | None = None
     loop: Loop | None = None
 
+    def __repr__(self) -> str:
+        cut = self.cut_off_display_C
+        return (
+            f"Demands(watchdog {self.watchdog_s:g} s, cut-off {cut.low:g} … {cut.high:g} °C within "
+            f"{cut.react_within_s:g} s, {len(self.faults)} single faults)"
+        )
+
     @property
     def within_s(self) -> tuple[float, float]:
         """How quickly watchdog and cut-off must act, in s."""

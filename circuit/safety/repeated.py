@@ -49,6 +49,9 @@ class Repeated(Judged):
     checks: tuple[Check, ...]
     faultless_pause_s: float | None = None
 
+    def __repr__(self) -> str:
+        return f"Repeated({self.colour}: {self.plays} plays with {self.pause_s:g} s between them)"
+
     @property
     def colour(self) -> str:
         """Green, amber or red."""

@@ -23,6 +23,10 @@ class SafetyVerdict(Judged):
 
     checks: tuple[Check, ...]
 
+    def __repr__(self) -> str:
+        exceeded = ", ".join(f"{check.quantity} {check.figures[0]} {check.unit}" for check in self.findings)
+        return f"SafetyVerdict({self.colour}{f': {exceeded}' if exceeded else ''})"
+
     def to_dict(self) -> dict[str, object]:
         """Colour and findings in the form of a sidecar."""
         return {"colour": self.colour, "findings": [each.to_dict() for each in self.findings]}
