@@ -133,6 +133,11 @@ def hard_of(findings: Sequence[Check]) -> tuple[Check, ...]:
     return tuple(finding for finding in findings if finding.severity == "hard")
 
 
+def hard_reason(findings: Sequence[Check]) -> str | None:
+    """The first hard finding in one sentence; None where there is none."""
+    return next(map(str, hard_of(findings)), None)
+
+
 def colour_of(findings: Sequence[Check]) -> str:
     """Green without findings, red with a hard one, otherwise amber."""
     if hard_of(findings):
@@ -182,8 +187,6 @@ class Judged:
     @property
     def reason(self) -> str | None:
         """The first hard limit exceeded, in one sentence; None where there is none."""
-        from .words import hard_reason
-
         return hard_reason(self.findings)
 
     @property

@@ -12,7 +12,7 @@ from ..rig.rig import AnyRig, Rig
 from ..rig.rules import Limits
 from ..rig.uncertainty import Uncertainty, tightened
 from ..solver.drive import Drive, DriveError
-from .checks import Check, Demands, Judged, colour_of, findings_of, hard_of, worst_of
+from .checks import Check, Demands, Judged, colour_of, findings_of, hard_of, hard_reason, worst_of
 from .current import CurrentPlant, CurrentPlay
 from .display import DisplayCourse, DisplayPlant
 from .ensemble import Ensemble
@@ -78,8 +78,6 @@ class Gate(Judged):
 
         A single play comes first: where that is not safe, repetition adds no information.
         """
-        from .words import hard_reason
-
         return hard_reason(findings_of(self.once)) or self.repeated.reason
 
     @property

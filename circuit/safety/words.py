@@ -13,7 +13,7 @@ from typing import Any
 from thermicon.icons.number_text import signed, significant, unit_text
 
 from ..rig.uncertainty import WORDS
-from .checks import Check, Cure, Harm, Scenario, SingleFault, cures_of, hard_of
+from .checks import Check, Cure, Harm, Scenario, SingleFault, cures_of, hard_of, hard_reason
 from .plant import ENDING_S
 from .repeated import PRACTICAL_S, Repeated
 
@@ -78,11 +78,6 @@ def check_text(check: Check) -> str:
         return f"{reached}, not {of_limit} ({check.source})"
     since = "" if isnan(check.since_s) else f" from {check.since_s:.2f} s on"
     return f"{reached}, {of_limit}{since} ({check.source})"
-
-
-def hard_reason(findings: Sequence[Check]) -> str | None:
-    """The first hard finding in one sentence; None where there is none."""
-    return next(map(str, hard_of(findings)), None)
 
 
 def more_and_cure(findings: Sequence[Check]) -> str:
