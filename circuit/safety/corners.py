@@ -20,7 +20,6 @@ from ..solver.steady import state_under_current
 
 GAINS_BETWEEN = (-1.0, -0.5, 0.0, 0.5, 1.0)
 """Shares of the gain's uncertainty where the coldest gain may lie between the ends: within 0.02 K of it."""
-GAIN = tuple(WORDS).index("gain_relative")
 MOVED = tuple(key for key in WORDS if key != "gain_relative")
 NEARLY = 0.97
 """Share of the greatest current at which the display is compared with that at the greatest: a step towards less."""
@@ -28,10 +27,16 @@ NEARLY = 0.97
 
 @dataclass(frozen=True, slots=True)
 class Corner:
-    """One possible state of a rig: shares and K of deviation in the order of `WORDS`; the gain is not part of `rig`."""
+    """One possible state of a rig: shares and K of deviation; the gain, which scales currents, is not part of `rig`."""
 
     rig: Rig
-    deviations: tuple[float, ...] = (0.0,) * len(WORDS)
+    contact_resistance_relative: float = 0.0
+    ambient_K: float = 0.0
+    gain_relative: float = 0.0
+    heat_sink_K: float = 0.0
+    seebeck_relative: float = 0.0
+    conductance_relative: float = 0.0
+    plates_relative: float = 0.0
 
     def __str__(self) -> str:
         from .words import corner_text
@@ -39,9 +44,9 @@ class Corner:
         return corner_text(self.deviations)
 
     @property
-    def gain_relative(self) -> float:
-        """Share by which currents deviate."""
-        return self.deviations[GAIN]
+    def deviations(self) -> tuple[float, ...]:
+        """Shares and K of deviation, in the order of `WORDS`."""
+        return tuple(getattr(self, key) for key in WORDS)
 
     @property
     def nominal(self) -> bool:
@@ -76,7 +81,7 @@ def _cornered(rig: Rig, every: Iterable[tuple[float, ...]]) -> tuple[Corner, ...
     """The rig as given, then a corner for each of the deviations that is one; those that differ in gain share a rig."""
     there = cache(lambda *moved: perturbed(rig, **dict(zip(MOVED, moved, strict=True))))
     known = (each for each in every if any(each))
-    return (Corner(rig), *(Corner(there(*each[:GAIN], *each[GAIN + 1 :]), each) for each in known))
+    return (Corner(rig), *(Corner(there(*each[:2], *each[3:]), *each) for each in known))
 
 
 def passes_most_cooling(rig: Rig) -> bool:

@@ -50,7 +50,7 @@ def test_intervals_become_what_the_gate_varies(fitted: RigFit, thenar: Rig) -> N
     assert uncertainty.seebeck_relative == 0.025
     assert uncertainty.ambient_K == thenar.uncertainty.ambient_K  # not identified
     assert uncertainty.plates_relative == thenar.uncertainty.plates_relative
-    assert {abs(corner.deviations[4]) for corner in corners_of(fitted.rig)} == {0.0, 0.025}
+    assert {abs(corner.seebeck_relative) for corner in corners_of(fitted.rig)} == {0.0, 0.025}
 
 
 def test_a_fit_that_misses_the_log_never_narrows_what_the_gate_varies(log: Log, thenar: Rig, tmp_path: Path) -> None:
