@@ -62,9 +62,7 @@ def kept_in() -> Path | None:
         if not str(root).isprintable():  # numba hashes the paths of sources
             raise NotPrivate(f"{str(root)!a} has letters that this locale cannot read; set PYTHONUTF8=1")
         versions = compiled_folder(numba.__version__, llvmlite.__version__)
-        folder = versions / digest_of(path for one in SOURCES for path in root.glob(one))
-        is_new = not folder.exists()
-        private_folder(folder)
+        folder = private_folder(versions / digest_of(path for one in SOURCES for path in root.glob(one)))
         # Others may not even enter: the modes of numba's own files depend on the umask.
         if sys.platform != "win32" and (
             folder.stat().st_mode & 0o077 or any(path.lstat().st_uid != os.geteuid() for path in folder.iterdir())
@@ -76,7 +74,7 @@ def kept_in() -> Path | None:
                 "compiled code cannot be stored, so that every run compiles it again: %s", problem
             )
         return None
-    if is_new:  # with many versions it takes a second, and what has gone stale grows with each new one only
+    if not any(folder.iterdir()):  # only a new version looks for stale ones, which takes a second where there are many
         remove_unused((path for path in versions.parent.glob("*/*/*/*") if path.is_file()), STALE_S)
     return folder
 
