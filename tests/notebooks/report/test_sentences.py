@@ -5,8 +5,8 @@ from typing import cast
 
 import pytest
 
-from thermicon.circuit.fitting.rig_fit import RigFit
 from thermicon.circuit.fitting.identify import FittedParameter
+from thermicon.circuit.fitting.rig_fit import RigFit
 from thermicon.notebooks.report.choices import choice_lines, goal_lines
 from thermicon.notebooks.report.fit_report import parameter_table
 from thermicon.notebooks.report.plan_report import designs_table
