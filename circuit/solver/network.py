@@ -180,7 +180,6 @@ def network_of(rig: Rig) -> Network:
     return network_on(rig, rig.column, rig.deep_C)
 
 
-@lru_cache(maxsize=512)
 def skin_network_of(rig: Rig) -> Network:
     """Return the lumps of a rig's skin under its display; the numbers of its plates are NaN."""
     plates = np.full(PLATE_NUMBERS, np.nan)

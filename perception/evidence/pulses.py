@@ -33,7 +33,6 @@ def _ranked(seed: int) -> Ranking:
     return rank(read_cue(DATA / "short-pulses.cue"), Rig.load(RIG), people=RANKED, seed=seed, parameters=0)
 
 
-@lru_cache(maxsize=4)
 def best_pulses(count: int, seed: int) -> tuple[Icon, ...]:
     """The sequences, `count` of them, whose nearest two are farthest apart; those named best are no better."""
     chosen = choose(_ranked(seed), Selection(count), parameters=0).icons
