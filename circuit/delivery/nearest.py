@@ -120,6 +120,8 @@ def changed(icon: Icon, base_C: float, *, slower: float = 1.0, smaller: float = 
         new: dict[str, Any] = {name: float(f"{by[name] * old:.6g}") for name, old in held.items()}
         if (level := getattr(statement, "to_C", None)) is not None:
             new["to_C"] = float(f"{base_C + smaller * (level - base_C):.6g}")
+        if isinstance(statement, Wave):  # as many periods as before, however their length is rounded
+            new["duration_s"] = float(f"{new['period_s'] * statement.duration_s / statement.period_s:.12g}")
         return replace(statement, **new)
 
     return replace(icon, statements=all_of(icon.statements))
