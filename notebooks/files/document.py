@@ -12,7 +12,6 @@ from typing import Literal
 from thermicon.circuit.inputs import read_bytes
 from thermicon.icons.atomic import OutputError, complete_or_absent
 from thermicon.icons.files.shipped import NotRegular, TooLarge, read_limited
-from thermicon.perception import Goal
 
 from .outputs import check_output
 from .versions import Version, Versions
@@ -128,6 +127,8 @@ class Document:
 
         Raises GoalError for a text that is not a goal.
         """
+        from thermicon.perception import Goal
+
         rest, said = GOAL.sub("", self.text), " ".join(goal.split())
         if said:
             Goal.parse(said)

@@ -15,8 +15,7 @@ from thermicon.icons import CueErrors, Icon, IconSet, parse
 from thermicon.icons.atomic import OutputError
 from thermicon.icons.model.arguments import checked
 from thermicon.icons.model.words import nearest
-from thermicon.perception import Percept, Ranking, rank
-from thermicon.perception.criteria import MOST_ICONS
+from thermicon.perception import Percept
 from thermicon.perception.observer.observer_model import ObserverModel
 
 from ..files.document import Document
@@ -26,6 +25,8 @@ from .document_bar import document_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from thermicon.perception import Ranking
 
     from .design_view import DesignView
     from .document_bar import DocumentBar
@@ -163,6 +164,9 @@ class Workbench:
 
         Raises CueErrors for a bad text, ValueError for more icons than are compared at once.
         """
+        from thermicon.perception import rank
+        from thermicon.perception.criteria import MOST_ICONS
+
         if len(self.icons) > MOST_ICONS:
             many = f"{len(self.icons):,} icons are more than the {MOST_ICONS:,} that are compared at once"
             raise ValueError(f"{many}: narrow the family")
