@@ -71,6 +71,9 @@ def stays(display_C: Span, held: Span) -> tuple[Check, ...]:
     """A check that fails for each side on which no cut-off passes what the display reaches and stops what is held."""
     return tuple(
         Check("display without a fault", "hard", reach, limit, "°C", math.nan, math.nan, STAYS, upper=upper)
-        for upper, reach, limit in ((False, display_C[0], held[0]), (True, display_C[1], held[1]))
-        if (limit - reach if upper else reach - limit) < LEAST_BEYOND_K
+        for upper, reach, limit in (
+            (False, display_C[0], held[0] + LEAST_BEYOND_K),
+            (True, display_C[1], held[1] - LEAST_BEYOND_K),
+        )
+        if (limit - reach if upper else reach - limit) < 0.0
     )
