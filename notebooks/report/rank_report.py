@@ -54,7 +54,8 @@ def rank_report(
     advice = edit_text(made, ranking.worst) if ranking.worst else ""
     chosen = list(choice_lines(made.choice)) if made.choice else []
     by = "" if ranking.observer == "shipped" else f", observer {ranking.observer}"
-    short = f"Predicted, not measured: {crowd_text(ranking)}{by}."
+    table = f" The table is about all {len(icons)} icons together." * bool(chosen)
+    short = f"Predicted, not measured: {crowd_text(ranking)}{by}.{table}"
     told: list[Block] = [Heading(chosen[0], 3), Bullets(tuple(chosen[1:]))] if chosen else []
     return [
         *([Heading(title, 1)] if title else []),
@@ -144,12 +145,13 @@ def cards(made: SetReport) -> tuple[tuple[str, str], ...]:
 
 
 def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = None) -> Grid:
-    """One row per icon in this order; those that are unsafe or not reached have a star and stand apart.
+    """One row per icon, the chosen first, else in this order; those unsafe or not reached have a star and stand apart.
 
-    Of more than `most`, the last row says how many were left out.
+    Of more than `most`, or than are chosen, the last row says how many were left out.
     """
     apart, labels = sum(icon.playable for icon in icons), made.ranking.labels
     chosen = () if made.choice is None else made.choice.icons
+    icons = sorted(icons, key=lambda icon: icon.name not in chosen)
     rows: list[tuple[str | Cell, ...]] = [
         (
             f"{'✓ ' * (icon.name in chosen)}{icon.name}{' *' * (place >= apart)}",
@@ -161,7 +163,7 @@ def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = N
         )
         for place, icon in enumerate(icons)
     ]
-    if most is not None and len(rows) > most + 1:
+    if most is not None and len(rows) > (most := max(most, len(chosen))) + 1:
         rows = [*rows[:most], (f"and {len(rows) - most} more", *[""] * (len(RANKED) - 1))]
     return grid(RANKED, rows, ("detected", "onset", "correct"), RANKED, apart)
 

@@ -122,7 +122,8 @@ WAV = Format(
     takes=("volts",),
     device="dc-coupled-audio",
     source="RIFF WAVE, PCM; written and read by Python's wave module",
-    how="play it at full volume without resampling, effects or fades, on an output that is DC-coupled",
+    how="play it at full volume, where full scale gives the volts that the sidecar names, without resampling, effects "
+    "or fades, on an output that is DC-coupled",
     write=wav_write,
     columns=wav_columns,
     facts=wav_facts,
