@@ -24,7 +24,7 @@ from .appraise import REACHED_BY, Appraisal, appraise, nearest_two
 from .goal import Goal
 from .pool import Pool
 from .request import ChoiceError, Objective, Selection
-from .subset_identification import PEOPLE, SubsetIdentification, pick
+from .subset_identification import PEOPLE, RESTARTS, SubsetIdentification, pick
 
 if TYPE_CHECKING:
     from ..identification.carry_over import CarryOver
@@ -177,14 +177,14 @@ class Chooser:
             d = felt.square(felt.pairs[:PEOPLE])[:, self.places][:, :, self.places]
             self.namings = SubsetIdentification.of(d, self.people.lapse, self.pool.durations_s, self.job.seed)
 
-    def best(self, count: int, draws: int, step: Callable[[], None]) -> Choice | None:
+    def best(self, count: int, draws: int, step: Callable[[], None], restarts: int = RESTARTS) -> Choice | None:
         """The best choice of so many, judged as a set of its own by people and draws; None where none keeps the totals.
 
         `step` is called once, and after each draw.
         """
         job, felt, asked, pool, namings = self.job, self.felt, self.asked, self.pool, self.namings
         middle = self.middle[np.ix_(self.places, self.places)]
-        picked = pick(middle, namings, count, asked.objective, self.must, self.limits, job.seed)
+        picked = pick(middle, namings, count, asked.objective, self.must, self.limits, job.seed, restarts)
         if picked is None:
             return None
         chosen = [self.places[k] for k in picked.chosen]

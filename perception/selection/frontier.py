@@ -26,7 +26,7 @@ from .choose import Choice, Chooser
 from .goal import Goal
 from .goal_result import GoalResult, SetOutcome, judge_goal
 from .request import ChoiceError, Objective, Selection
-from .subset_identification import PEOPLE
+from .subset_identification import PEOPLE, RESTARTS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from ..ranking.ranking import Ranking
 
-ROUGH_DRAWS = 64
+ROUGH_DRAWS, ROUGH_RESTARTS = 64, 1
 """Draws of the posterior behind a rough frontier, whose people are the first that choices are compared by."""
 
 MOST = 12
@@ -189,11 +189,11 @@ def frontier(
     sizes = range(2, min(most, len(chooser.pool)) + 1)
     step = step_counter(progress, job.batches + len(sizes) * (1 + draws))
 
-    def judged(felt: FeltResult, draws: int, step: Callable[[], None]) -> Frontier:
+    def judged(felt: FeltResult, draws: int, step: Callable[[], None], restarts: int = RESTARTS) -> Frontier:
         chooser.feel(felt)
         points: list[Choice] = []
         for count in sizes:
-            if (choice := chooser.best(count, draws, step)) is None:  # nor will more keep the limits
+            if (choice := chooser.best(count, draws, step, restarts)) is None:  # nor will more keep the limits
                 break
             points.append(choice)
         if not points:
@@ -208,5 +208,5 @@ def frontier(
         if len(felt.pairs) == job.people:
             return judged(felt, draws, step)
         if rough is not None:
-            rough(judged(felt, min(draws, ROUGH_DRAWS), lambda: None))
+            rough(judged(felt, min(draws, ROUGH_DRAWS), lambda: None, ROUGH_RESTARTS))
     raise AssertionError("the last are all people")

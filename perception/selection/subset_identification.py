@@ -238,6 +238,7 @@ def pick(
     must: Sequence[int] = (),
     limits: Totals | None = None,
     seed: int = 0,
+    restarts: int = RESTARTS,
 ) -> SubsetChoice | None:
     """The best `count` by one objective: of median d′ (n, n) for `worst`, else of the namings; None: no choice fits."""
     within = limits or Totals.none(len(middle))
@@ -245,7 +246,7 @@ def pick(
         return max_min_subset(middle, count, must, within)
     if math.comb(len(middle) - len(must), count - len(must)) <= MOST_SUBSETS:
         return namings.enumerated(count, objective, must, within)
-    return _climbed(middle, namings, count, objective, must, within, seed)
+    return _climbed(middle, namings, count, objective, must, within, seed, restarts)
 
 
 def _climbed(
@@ -256,6 +257,7 @@ def _climbed(
     must: Sequence[int],
     limits: Totals,
     seed: int,
+    restarts: int,
 ) -> SubsetChoice | None:
     """The best of the widest choice and of random ones, each improved by single swaps until none helps."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, 6]))
@@ -264,7 +266,7 @@ def _climbed(
     if widest is None:
         return None
     drawn = [
-        (*must, *sorted(int(k) for k in rng.choice(others, count - len(must), replace=False))) for _ in range(RESTARTS)
+        (*must, *sorted(int(k) for k in rng.choice(others, count - len(must), replace=False))) for _ in range(restarts)
     ]
     best, value, seen = widest.chosen, -math.inf, 0
     for start in [widest.chosen, *(one for one in drawn if limits.kept(one))]:
