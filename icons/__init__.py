@@ -1,4 +1,4 @@
-"""Cue text to icons to corner points: the language of thermal icons.
+"""thermicon.icons: cue text, code or recording → icon → corner points.
 
 The names stand in the order of the flow in `__init__.pyi`; nothing heavier than the standard library is imported before
 it is used.

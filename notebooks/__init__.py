@@ -1,4 +1,4 @@
-"""The faces of thermicon: command line, figures, notebooks."""
+"""thermicon.notebooks: command line, reports, figures, studies, workbench."""
 
 from .startup import guard
 
