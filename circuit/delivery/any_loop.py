@@ -4,7 +4,7 @@ The skin moves fastest where a loop swings from one cut-off to the other at its 
 skin lies between those of a display held at either cut-off indefinitely, since more heat in means warmer everywhere;
 from there the driver gets stuck at its limit until the cut-off on a second sensor acts. The hot plate gets hottest on
 the way from the upper cut-off to the lower. A loop may also run to its limit from a start that is too warm, and stay
-there, where more current cools less. That the swings are the worst ones is a search, not a proof, so some room is kept.
+there, where more current cools less. The worst swing was searched for, not proven; a margin covers this.
 """
 
 from __future__ import annotations

@@ -1,9 +1,8 @@
 """The gate for a controller around the rig's own module.
 
-A display that is as far from its set-points, and from what the loop makes of them, as its sensor may be wrong bounds
-the doses of repetition, and the temperatures of a loop that works. What no loop may pass, in any play after any other,
-is in `any_loop.py`; that the loop which the set-points are shaped for does not swing, in the fastest and slowest
-corners, is tried here, and no other loop is demanded. The module that follows by it shows how a play ends.
+Doses of repetition, and the temperatures of a loop that works, are bounded by a display that is off by the error of
+its sensor. Limits for any loop, in any play after any other, are in `any_loop.py`. Here the loop that the set-points
+are shaped for is tested for oscillation in the fastest and slowest corners; its simulation shows how a play ends.
 """
 
 import itertools

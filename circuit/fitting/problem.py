@@ -1,8 +1,8 @@
 """The least-squares problem of a fit: free parameters, residuals, derivatives.
 
-Nobody's skin is that of the rig file: the prior of a factor of its layers is the spread between people. What is a times
-as thick is simulated as equally thick with 1/a of the conductivity and a times the density and perfusion, which is the
-same to a log and keeps the mesh of the skin. Scales are fitted as logarithms, so that they stay positive.
+Nobody's skin is that of the rig file: the prior of a factor of its layers is the spread between people. A layer a
+times as thick keeps its mesh: it gets 1/a of the conductivity, and a times the density and perfusion, which is the same
+to a log. Scales are fitted as logarithms, so that they stay positive.
 """
 
 from __future__ import annotations

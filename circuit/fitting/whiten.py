@@ -1,7 +1,7 @@
 """Residuals of a run whose drive is not known between rows, made independent of one another.
 
-What the drive did between two rows goes on in all rows after it, by the response of the circuit. Rows err alike by
-that, with a covariance K; residuals r become L⁻¹·r, where L·Lᵀ = K + σ² of the sensors. Long runs are parted.
+An unknown drive between two rows affects all later rows by the response of the circuit. Their errors are correlated,
+with a covariance K; residuals r become L⁻¹·r, where L·Lᵀ = K + σ² of the sensors. Long runs are split.
 """
 
 from __future__ import annotations

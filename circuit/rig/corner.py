@@ -25,8 +25,8 @@ def perturbed(
 ) -> Rig:
     """Return a rig whose numbers deviate from those of its file, beyond whose bounds they may lie.
 
-    Shares (−0.3 is 30 % less), the resistance of the module against its conductance, and K; a passive sink has its air
-    with it. Bare skin rests as given; blood is solved again where the rig solves it.
+    Relative arguments are shares (−0.3 is 30 % less), `_K` are kelvins; the air of a passive sink moves with it.
+    Bare skin rests as given; blood is solved again where the rig solves it.
     """
     shares = {
         "contact resistance": contact_resistance_relative,

@@ -30,7 +30,7 @@ class Rule:
     """One side of one limit: what may not go above (`upper`) or below `limit`, in `unit`.
 
     `severity` is hard or soft. `key` names it in a rig file's [safety] table, empty where it is fixed; `bound` is
-    the published figure that it cannot be loosened beyond, None where there is none: then it can only be tightened.
+    the published limit of loosening; None: it can only be tightened.
     With `above_C` it limits the time in s that the display is warmer. A limit in K counts from where a run began.
     `shipped` is the limit unchanged.
     """

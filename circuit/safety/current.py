@@ -2,8 +2,8 @@
 
 The bounds of repetition hold for temperatures only, not for rates, which depend on differences between nodes. Rates
 are therefore checked by simulation: each drive is played after every other drive, starting from rest and from its
-steady cycle. After its own play the pause may also be longer than the shortest by each of LONGER_S, since the display
-returns to rest sooner than the skin.
+steady cycle. After its own play, pauses longer by each value of LONGER_S are tried too, since the display returns to
+rest sooner than the skin.
 """
 
 from __future__ import annotations

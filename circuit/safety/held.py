@@ -1,4 +1,4 @@
-"""Cut-off temperatures: beyond the display's fault-free extremes, at levels that skin tolerates for any length of time.
+"""Cut-off temperatures: outside the display's fault-free range, but tolerable for skin without a time limit.
 
 A driver that is stuck at a current between its limits takes the display to a level at which it stays. Neither watchdog
 nor cut-off acts where that lies inside the cut-off, so a display held there must be safe by itself. The skin under a

@@ -1,7 +1,7 @@
 """Simulation of a session: one run, divided into plays, with its worst case.
 
-A session is a given sequence, so it is judged as one play at the gate, and not for repetition; an export covers single
-faults of the hardware.
+A session is a given sequence, so the gate judges it as one play, without repetition. Single faults of the hardware are
+judged by an export, not here.
 
 A break, in which the hand is off and then lands again, brings skin and module back towards rest. With a given current
 every temperature and every rate is affine in the state that a play begins from, so that a block after a break lies

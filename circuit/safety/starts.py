@@ -1,10 +1,10 @@
 """The starts of plays: at rest, first after no power, later in any order.
 
-A later play begins between the warm and the cold bound of all plays after the shortest pause. A first one begins after
-a rest, which is held on a display that was without power, or whose play was stopped at any instant and that gave no
-current since, with the polarity check or without. What is warmer than all of these in every node stays warmer while
-the rest is held, since the circuit preserves order. The rest lasts until what it leaves is as near to those bounds as
-a display counts as recovered; what remains is joined to them, so that no play begins outside.
+A later play begins between the warm and the cold bound of all plays after the shortest pause. A first play follows a
+rest. Before that rest the display was without power, or a play was stopped at any instant and no current has flowed
+since; the polarity check may have run. A state that is warmer than all of these in every node stays warmer during the
+rest, since the circuit preserves order. The rest lasts until its end is as near to the bounds as a display counts as
+recovered; the bounds are then widened by the remainder, so that no play begins outside.
 """
 
 from __future__ import annotations

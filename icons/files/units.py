@@ -1,6 +1,6 @@
 """Plausibility of a column's readings in the unit of its name.
 
-The whole range of a column decides, and every unit that its numbers fit is named; nothing is converted.
+A column's whole range decides. Every unit that fits it is listed; nothing is converted.
 """
 
 from __future__ import annotations

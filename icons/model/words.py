@@ -35,7 +35,7 @@ VOCABULARY: dict[str, tuple[str, ...]] = {
     "header": _KEYS,
 }
 CLAUSES = ("by", "to", "at", "over", "for", "every", "in", "step", "starting", "cut", "most", "least", "up", "down")
-"""Words inside of statements."""
+"""Words within a statement, after the first."""
 CONTROLS: tuple[str, ...] = get_args(Control)
 
 _TABLES = tomllib.loads(resources.files("thermicon.icons").joinpath("data/words.toml").read_text(encoding="utf-8"))

@@ -1,6 +1,6 @@
 """Short pulses: published cues known only by a summary, with invented substitutes.
 
-Of 52 sequences of one to three pulses the best 22 and 16 are predicted, as many as were published, and 22 by chance.
+Of 52 sequences of one to three pulses the best 22 and 16 (the published counts) and 22 random ones are predicted.
 """
 
 from functools import lru_cache

@@ -1,6 +1,6 @@
 """Perception of the designed against the delivered icons: detection, d′ to the other icons of the set.
 
-What the device changes for the nominal person is added to every person's temperatures, in proportion to the icon there.
+The device's change for the nominal person is scaled by each person's response to the icon, and added to it.
 That is exact for what scales with the icon, and wrong by about a tenth otherwise, since skins differ in lag.
 """
 

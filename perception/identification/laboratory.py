@@ -1,6 +1,6 @@
 """Intervals for a new laboratory: a prediction repeated with draws from the posterior.
 
-Each draw invites a sample of the same few people, and adds its difference from the nominal observer with these.
+Each draw is tested on a sample of the same few people; its difference from the nominal observer on them is added.
 """
 
 from __future__ import annotations

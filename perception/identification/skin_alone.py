@@ -1,7 +1,7 @@
 """The baseline: an observer who uses skin temperature only.
 
 A change is noticed at one size; icons differ by the root mean square of the difference of their skin temperatures
-over one noise in K, which the rate task sets, exactly as that of memory (`evidence.task`).
+over one noise in K, which the rate task sets, exactly as that of memory (`identification.task`).
 """
 
 from __future__ import annotations

@@ -54,8 +54,8 @@ def constant(
     """A field of a mechanism by the `name` of its prior, with {} for the channel where each has its own.
 
     Its value is `scale` times that of files, and lies `within` a range. `only` is the variant that has it, `keys` are
-    those of its record in an observer file. One of laboratory tasks alone (`task`) may be missing there; of one that is
-    a `span`, the ends are the value.
+    those of its record in an observer file. A `task` constant is used by laboratory tasks only, and may be
+    missing there; the value of a `span` is an interval.
     """
     names = tuple(name.format(channel) for channel in CHANNELS) if "{}" in name else (name,)
     quantity = QUANTITIES.get(name, name.removeprefix("{} "))

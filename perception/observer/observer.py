@@ -66,8 +66,8 @@ class Observer(
     velocity_m_per_s, path_hand_m, path_forearm_m
         Conduction in nerves, m per s, over paths to the cord, m.
     criterion, unhurried, caution_after_pulse, noise_correlation_s, criterion_floor
-        Change that is answered in haste and without, d′, how much more after a pulse, the noise's correlation, s, and
-        the least criterion of anybody, d′.
+        Criterion of hurried and of unhurried answers, d′, its factor after a pulse, the noise's correlation, s, and the
+        least criterion of anybody, d′.
     threshold_drive, gain_noise, a, p
         Drive that feels like a threshold, SD (ln) of the gain, slope of sensation in d′ and its exponent.
     rating_at_threshold, rating_exponent, mean_rating, rating_scatter

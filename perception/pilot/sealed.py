@@ -1,6 +1,6 @@
 """A sealed prediction: the log score of a `rank` file on later answers, beside guessing and skin alone.
 
-The best that its own matrix allows is the score that it expects of itself if it is the truth.
+Its best possible score is the one expected if its own matrix is true.
 """
 
 from __future__ import annotations

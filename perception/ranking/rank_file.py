@@ -1,6 +1,6 @@
 """A ranking as the plain data of `rank --json`, with None for missing values.
 
-So is what is asked of a ranking only afterwards: edits, a goal, a choice.
+Edits, goals and choices that are asked for later are written likewise.
 """
 
 from __future__ import annotations
