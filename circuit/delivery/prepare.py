@@ -64,7 +64,7 @@ def prepare_set(
     deliveries = []
     for done, icon in enumerate(icons, 1):
         deliveries.append(deliver(icon, rig, device, tail_s=tail_s))
-        form.write(deliveries[-1])  # what it cannot hold is told before the gate, which takes a thousand times as long
+        form.write(deliveries[-1])  # a drive that the format cannot hold is refused before the gate, which takes longer
         if step is not None:
             step(done, len(icons))
     verdicts = judge(deliveries, pause_s) if deliveries else ()

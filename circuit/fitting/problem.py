@@ -1,5 +1,8 @@
 """The least-squares problem of a fit: free parameters, residuals, derivatives.
 
+Fitted along with the keys are the zero of every temperature sensor, the distance of the sensors from the drive within a
+row, shift and drift of every further clock and, unless left out, the layers of the skin.
+
 Nobody's skin is that of the rig file: the prior of a factor of its layers is the spread between people. A layer a
 times as thick keeps its mesh: it gets 1/a of the conductivity, and a times the density and perfusion, which is the same
 to a log. Scales are fitted as logarithms, so that they stay positive.

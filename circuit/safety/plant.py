@@ -1,4 +1,7 @@
-"""The interface between the gate and a module or display in all corners; also the result of one play."""
+"""The interface between the gate and a module or display in all corners; also the result of one play.
+
+There are two: a module that a current drives (`current.py`), a display that shows temperatures (`display.py`).
+"""
 
 from __future__ import annotations
 
