@@ -146,7 +146,8 @@ def test_the_installed_package_checks_exports_and_copies_notebooks(stranger: Str
     cue = "cue 1\nset mine { site thenar; control display; baseline 32 °C }\nicon kühl { cool by 2 °C at 1 °C/s }\n"
     (stranger.folder / "größe.cue").write_text(cue.replace("kühl", "cool"), encoding="utf-8")
     run = stranger.run("check", "größe.cue")
-    assert (run.returncode, run.stderr) == (0, ""), run.stderr
+    (following,) = run.stderr.splitlines()
+    assert run.returncode == 0 and following.startswith("Next: thermicon simulate "), run.stderr
     run = stranger.run("export", "größe.cue", "--to", "csv", "-o", "Aus gabe")
     assert run.returncode == 0, run.stderr
     assert {path.suffix for path in (stranger.folder / "Aus gabe").rglob("*")} >= {".csv", ".json"}
