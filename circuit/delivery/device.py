@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -151,7 +150,6 @@ def _folder() -> Any:
     return resources.files("thermicon.circuit") / "devices"
 
 
-@cache
 def _shipped(name: str) -> Device:
     return _build((_folder() / f"{name}.toml").read_text("utf-8"), f"device {name}")
 

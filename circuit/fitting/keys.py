@@ -5,7 +5,6 @@ import re
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 from importlib import resources
 
 from thermicon.icons.near_words import did_you_mean, nearest_words
@@ -42,7 +41,6 @@ class FitKey:
 CONTACT = "contact.resistance_m2K_per_W"
 
 
-@cache
 def _table() -> dict[str, FitKey]:
     """The keys of ``data/fit-keys.toml``, in their order; `usual` is the shipped uncertainty unless given there."""
     text = resources.files("thermicon.circuit").joinpath("data/fit-keys.toml").read_text(encoding="utf-8")

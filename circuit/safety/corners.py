@@ -10,7 +10,6 @@ heat grows with the square: where the driver can pass that current, gains in bet
 import itertools
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cache, lru_cache
 
 from ..rig.corner import perturbed
 from ..rig.rig import Rig
@@ -54,7 +53,6 @@ class Corner:
         return not any(self.deviations)
 
 
-@lru_cache(maxsize=64)
 def corners_of(rig: Rig) -> tuple[Corner, ...]:
     """The rig as given and then the corners of its uncertainty, fewer than 64 where one is 0."""
     unsure = rig.uncertainty
@@ -78,10 +76,10 @@ def _ends(most: float) -> tuple[float, ...]:
 
 
 def _cornered(rig: Rig, every: Iterable[tuple[float, ...]]) -> tuple[Corner, ...]:
-    """The rig as given, then a corner for each of the deviations that is one; those that differ in gain share a rig."""
-    there = cache(lambda *moved: perturbed(rig, **dict(zip(MOVED, moved, strict=True))))
+    """The rig as given, then a corner for each of the deviations that is one."""
     known = (each for each in every if any(each))
-    return (Corner(rig), *(Corner(there(*each[:2], *each[3:]), *each) for each in known))
+    moved = ((dict(zip(MOVED, (*each[:2], *each[3:]), strict=True)), each) for each in known)
+    return (Corner(rig), *(Corner(perturbed(rig, **by), *each) for by, each in moved))
 
 
 def passes_most_cooling(rig: Rig) -> bool:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import replace
-from functools import cache
 from math import isnan
 
 import numpy as np
@@ -24,7 +23,6 @@ from .corners import Corner
 _KEPT = ("CEM43 start", "CEM43 reference", "CEM43 base at or above 43 °C", "CEM43 base from 37 to 43 °C")
 
 
-@cache
 def constants() -> Array:
     """Constants of both measures in the order that the kernels expect (6,)."""
     known = {record.quantity: record.central for record in shipped_records("exposure.toml")}

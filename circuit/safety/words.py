@@ -5,7 +5,6 @@ Nothing is decided here and nothing that decides imports this module: it is load
 
 import tomllib
 from collections.abc import Sequence
-from functools import cache
 from importlib import resources
 from math import isnan
 from typing import Any
@@ -108,7 +107,6 @@ def repeated_reason(repeated: Repeated) -> str | None:
     return f"{reason}; the shortest safe pause is {shortest:g} s"
 
 
-@cache
 def _fault_words() -> dict[str, Any]:
     """The name of each kind of fault, its effect, and what prevents its harm."""
     return tomllib.loads((resources.files("thermicon.circuit") / "data" / "fault-words.toml").read_text("utf-8"))

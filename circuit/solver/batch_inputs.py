@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -73,7 +72,6 @@ class Bank:
         return rows
 
 
-@lru_cache(maxsize=64)
 def bank_of(rig: Rig) -> Bank:
     """A bank of one rig."""
     return Bank.of([network_of(rig)])

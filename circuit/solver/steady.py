@@ -1,7 +1,6 @@
 """Steady states: the state under a constant current, or the current that holds a baseline."""
 
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 
@@ -27,7 +26,6 @@ def _plates(network: Network, in_the_end: bool = False) -> tuple[float, float, f
     return alpha, ohm, leak, sink, out
 
 
-@lru_cache(maxsize=512)
 def _column(network: Network) -> tuple[Array, Array]:
     """Return (z, e) with lump[i] = z[i] + e[i] · (the state above it) in steady state."""
     g, perfusion, deep = network.conductance_W_per_K, network.perfusion_W_per_K, network.deep_C
@@ -42,7 +40,6 @@ def _column(network: Network) -> tuple[Array, Array]:
     return z, e
 
 
-@lru_cache(maxsize=512)
 def state_under_current(network: Network, current_A: float, in_the_end: bool = False) -> Array:
     """Steady state (nodes,) in °C, read-only, under a current; ArithmeticError where it would heat without limit."""
     alpha, ohm, leak, sink, out = _plates(network, in_the_end)

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from functools import cache
 from importlib import resources
 from importlib.metadata import version
 
@@ -134,7 +133,6 @@ def _one_line(about: str) -> str:
     return out.rstrip(".")
 
 
-@cache
 def references() -> tuple[Reference, ...]:
     """Return the bibliography that ships, one field a line in the file."""
     text = resources.files("thermicon.icons").joinpath("data/references.bib").read_text(encoding="utf-8")

@@ -81,7 +81,6 @@ def decimal_text(value: float) -> str:
     return mantissa + (f"e{int(exponent)}" if mark else "")
 
 
-@lru_cache(maxsize=4096)
 def written(value: float, kind: Kind) -> tuple[str, str]:
     """Return number and unit that read back to exactly this SI value, in the shortest sensible unit.
 

@@ -191,11 +191,9 @@ def _pulse(channel: Channel) -> Stimulus:
     return _thenar("display").play([raised_cosine(channel, PULSE_K, PULSE_S)], PULSE_S + 4.0)
 
 
-@lru_cache(maxsize=2)
 def _steep(channel: Channel) -> Stimulus:
     return _thenar("display").play([ramp(channel, STEEP_K, STEEP_K_PER_S, 2.0)], 4.0)
 
 
-@lru_cache(maxsize=2)
 def _thenar(surface: Surface) -> Bench:
     return Bench(Rig.load("thenar"), surface=surface)

@@ -51,12 +51,12 @@ class Posterior:
         middle = load_priors().values(load_priors().middle)
         return {name: middle[name] for name in LIMITS} if self.variable == "heat flow" else {}
 
-    @cached_property
+    @property
     def priors(self) -> Priors:
         """Priors of what is inferred: the constants and an offset for each laboratory and channel."""
         return priors_of(self.variable).without(tuple(self.fixed))
 
-    @cached_property
+    @property
     def rows(self) -> tuple[Row, ...]:
         """The rows that count."""
         return tuple(compress(load_rows(), self.counted))

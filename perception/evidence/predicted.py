@@ -123,7 +123,6 @@ def plausible_laboratories(n: int, seed: int, variable: Variable) -> DrawnLabora
     )
 
 
-@lru_cache(maxsize=8)
 def plausible_observers(n: int, seed: int, variable: Variable = "temperature") -> tuple[Observer, ...]:
     """The observers of these laboratories; the same for the same seed."""
     drawn = plausible_laboratories(n, seed, variable)

@@ -4,7 +4,7 @@ The skin is the column of a rig without its display; the flux is absorbed at the
 """
 
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import partial
 
 import numpy as np
 
@@ -82,7 +82,6 @@ def _flux_felt(area_m2: float | None, observer: Observer) -> float:
     return float(np.sqrt(low * high))
 
 
-@lru_cache(maxsize=64)
 def _forearm(observer: Observer) -> tuple[Rig, Warming]:
     rig = Rig.load("forearm")
     return rig, radiant_warming(rig, observer.depths_m(rig.skin.corneum_m).warm)

@@ -5,7 +5,6 @@ Numbers on a log scale are logarithms.
 
 import math
 from collections.abc import Callable, Iterator
-from functools import cache
 
 import numpy as np
 
@@ -106,7 +105,6 @@ ORDERS: tuple[tuple[str, str, float, tuple[str, str], tuple[str, str], tuple[Cha
 def order_of_sites(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E9: limits at 1 K/s at one site over those of the same people at another."""
 
-    @cache
     def limit(place: tuple[str, str], channel: Channel, area_cm2: float) -> float:
         rig, site = place
         played = Stimulated.of(laboratory, DisplayRamp.held(rig, channel, 32.0, LIMIT_K, 1.0, 0.0))

@@ -7,7 +7,6 @@ import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from statistics import NormalDist
 
 import numpy as np
@@ -95,7 +94,6 @@ def _felt(known: RecordTable, observer: Observer) -> Iterator[tuple[Array, Array
         yield *perceive_many(*played.received(observer), played.dt_s, observer), played.dt_s
 
 
-@lru_cache(maxsize=64)
 def _pair(span_K: float, slow: float, fast: float) -> Stimulus:
     end = round(span_K / slow + TAIL_S, 2)
     return Bench(Rig.load(RIG)).play([ramp("cold", span_K, rate) for rate in (slow, fast)], end)

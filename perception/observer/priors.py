@@ -9,7 +9,6 @@ import math
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Literal
 
@@ -124,7 +123,6 @@ class _Row(BaseModel):
     source: str = Field(min_length=1)
 
 
-@lru_cache(maxsize=1)
 def load_priors() -> Priors:
     """The shipped priors, in the order of the file."""
     rows = [_Row.model_validate(row) for row in tomllib.loads(FILE.read_text("utf-8"))["prior"]]

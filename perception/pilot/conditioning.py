@@ -8,7 +8,6 @@
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
-from functools import cached_property
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -144,12 +143,12 @@ class Namings:
     rounds: ClassVar[int] = 2
     by_people: ClassVar[bool] = True
 
-    @cached_property
+    @property
     def pooled(self) -> AnswerScore:
         """Score of all participants together."""
         return score("all", self.trials.counts, self.trials.unanswered.sum(axis=1))
 
-    @cached_property
+    @property
     def each(self) -> tuple[AnswerScore, ...]:
         """Score of each participant."""
         rows = zip(self.trials.participants, self.trials.counts, self.trials.unanswered, strict=True)

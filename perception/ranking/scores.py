@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
@@ -112,7 +111,7 @@ class PairScore:
     `d_prime` is the median from memory over people, `confused_probability` the share of trials in which one is named as
     the other, the mean of both directions (0–1). `why` are reasons in words and `parts` components of the distance, for
     a nominal person. `rules_margin` is that by which `rules` separate the pair, in shares of a threshold; None: by
-    direction alone. These four are made when they are first read, of the two `places` of what is `compared`.
+    direction alone. These four are made when they are read, of the two `places` of what is `compared`.
     """
 
     a: str
@@ -122,25 +121,25 @@ class PairScore:
     places: tuple[int, int] = field(repr=False)
     compared: PairInputs = field(repr=False, compare=False)
 
-    @cached_property
+    @property
     def why(self) -> tuple[str, ...]:
         """Reasons for the distance of the two, in sentences."""
         of, (i, j) = self.compared, self.places
         felt = of.percepts[i], of.percepts[j]
         return pair_reasons(of.traces[i], of.traces[j], felt, of.observer, of.memory, of.episodes, self.places)
 
-    @cached_property
+    @property
     def rules(self) -> tuple[RuleResult, ...]:
         """Rules of thumb on the pair."""
         i, j = self.places
         return pair_rules(self.compared.traces[i], self.compared.traces[j])
 
-    @cached_property
+    @property
     def rules_margin(self) -> float | None:
         """Margin by which rules separate the two."""
         return pair_margin(self.rules)
 
-    @cached_property
+    @property
     def parts(self) -> tuple[DistanceComponent, ...]:
         """Components of the distance."""
         return components_of(self.compared.episodes, *self.places, self.compared.observer)
