@@ -22,13 +22,14 @@ import numba
 import numpy as np
 import scipy
 
-from thermicon.icons.atomic import NotPrivate, compiled_folder, private_folder, remove_unused
+from thermicon.icons.cache_folder import NotPrivate, compiled_folder, private_folder, remove_unused
 
 STALE_S = 90 * 24 * 3600.0
 """Machine code that was not used for this long is removed."""
 SOURCES = (
     *("circuit/compiled.py", "circuit/vector_math.py", "circuit/rig/module.py", "circuit/safety/*_kernel.py"),
-    *("circuit/safety/tally.py", "circuit/solver/modes.py", "circuit/solver/kernel*.py", "circuit/solver/network.py"),
+    *("circuit/safety/tally.py", "circuit/solver/modes.py", "circuit/solver/kernel*.py"),
+    *("circuit/solver/network.py", "circuit/solver/plates.py"),
     *("perception/kernels/*.py", "perception/selection/subset_identification.py"),
 )
 """All files that hold compiled functions, or constants that these use."""

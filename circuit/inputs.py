@@ -6,11 +6,12 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thermicon.icons.files.shipped import NotRegular, TooLarge, beside, read_limited
+from thermicon.icons.files.read_limited import NotRegular, TooLarge, read_limited
+from thermicon.icons.files.shipped import beside
 from thermicon.icons.files.table import Fault
 from thermicon.icons.installing import install
 from thermicon.icons.model.arguments import InputError as InputError
-from thermicon.icons.model.context import clean_line, first_control
+from thermicon.icons.model.clean_text import clean_line, first_control
 
 if TYPE_CHECKING:
     from pydantic import ValidationError

@@ -1,17 +1,13 @@
-"""The writer of files, which are complete or absent; also the user's private cache folder."""
+"""The writer of files, which are complete or absent."""
 
 from __future__ import annotations
 
 import os
-import platform
 import secrets
 import signal
-import stat
-import sys
 import threading
-import time
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 
@@ -19,7 +15,6 @@ MARK = "thermicon-part"
 """What stands in the hidden name of a file or folder that is not complete."""
 LONGEST_STEM = 40
 """Characters of a file's name that its draft repeats, so that long names stay within what disks take."""
-WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 
 class OutputError(Exception):
@@ -91,67 +86,3 @@ def kept_text(folder: Path, there: Sequence[str]) -> str:
     if len(there) == 1:
         return f"{folder / there[0]} already exists and was kept"
     return f"{folder / there[0]} and {len(there) - 1} more already exist and were kept"
-
-
-def cache_folder() -> Path:
-    """The user's cache folder for this program: THERMICON_CACHE, or where the system keeps such things."""
-    if chosen := os.environ.get("THERMICON_CACHE"):
-        return Path(chosen)
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")) / "thermicon"
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches" / "thermicon"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "thermicon"
-
-
-def compiled_folder(numba: str, llvmlite: str) -> Path:
-    """The folder of machine code that these versions compiled for this Python and this kind of processor."""
-    tools = f"numba-{numba}-llvmlite-{llvmlite}-{sys.implementation.cache_tag}"
-    return cache_folder() / "compiled" / f"{tools}-{platform.machine()}"
-
-
-class NotPrivate(OSError):
-    """A folder cannot be created, or others could write into it; the text says why and what to do."""
-
-
-def private_folder(path: Path) -> Path:
-    """Return a folder, created if missing, into which only this user (and the system's administrator) can write.
-
-    Its owner and mode and those of all folders above are checked, as ssh does with its keys. On Windows, where access
-    lists keep the user's own folders private, it is only created. Raises NotPrivate.
-    """
-    path = path.absolute()
-    try:  # even to look is not allowed inside another user's private folder
-        missing = [folder for folder in (path, *path.parents) if not folder.exists()]
-        for folder in reversed(missing):
-            folder.mkdir(mode=0o700, exist_ok=True)
-    except OSError as problem:
-        raise NotPrivate(f"{path} cannot be created ({problem.strerror or problem})") from None
-    if sys.platform != "win32":
-        real = path.resolve()
-        for folder in (real, *real.parents):
-            if fault := _fault(folder, folder == real):
-                cure = "set THERMICON_CACHE to a folder that only you can write to (chmod go-w)"
-                raise NotPrivate(f"{folder} {fault}; {cure}")
-    if not os.access(path, os.W_OK | os.X_OK):
-        raise NotPrivate(f"{path} is not writable")
-    return path
-
-
-def _fault(folder: Path, is_last: bool) -> str | None:
-    status = folder.stat()
-    user = os.geteuid()
-    if status.st_uid != user and (is_last or status.st_uid != 0):
-        return "belongs to another user"
-    # A group counts as others even if it is the user's own: no number and no list says that it has no other member.
-    if status.st_mode & WRITABLE_BY_OTHERS and (is_last or not status.st_mode & stat.S_ISVTX):
-        return "can be written by others"
-    return None
-
-
-def remove_unused(files: Iterable[Path], longest_s: float) -> None:
-    """Remove files that nobody read or wrote for so many s; where that fails, they stay for another time."""
-    with suppress(OSError):
-        for file in files:
-            if time.time() - max(file.stat().st_atime, file.stat().st_mtime) > longest_s:
-                file.unlink(missing_ok=True)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 import typer
 
 from thermicon.icons.model.arguments import InputError, advised
-from thermicon.icons.model.context import clean, clean_line
+from thermicon.icons.model.clean_text import clean, clean_line
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -176,7 +176,7 @@ def _is_new(text: str) -> bool:
     """Whether this was not asked before; an empty file in the cache folder remembers it."""
     from hashlib import sha256
 
-    from thermicon.icons.atomic import cache_folder
+    from thermicon.icons.cache_folder import cache_folder
 
     told = cache_folder() / "told" / sha256(text.encode()).hexdigest()[:20]
     if told.exists():

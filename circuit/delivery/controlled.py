@@ -23,7 +23,7 @@ from ..safety.gate import Gate, gate_shown
 from ..safety.held import BEYOND_K
 from ..safety.plant import recovery_s
 from ..solver.batch_inputs import Bank, run_regulate
-from ..solver.kernel_follow import DELAY_S, KD, KI, KP, LAG_S
+from ..solver.kernel_regulate import DELAY_S, KD, KI, KP, LAG_S
 from ..solver.network import ALPHA, COLD_J_PER_K, HIGHEST_A, LOWEST_A, RESISTANCE
 from .any_loop import SENSOR_K, AnyLoop, Limits_A
 from .delivered_drive import DeliveredDrive

@@ -184,7 +184,7 @@ def run_regulate(
     state: Array,
 ) -> tuple[Array, Array, Index]:
     """Return (current A, display °C, limit code), each (lanes, periods), of a PID loop; `gains` (rigs, 5)."""
-    from .kernel_follow import regulate
+    from .kernel_regulate import regulate
 
     return _run_periods(regulate, bank, rig_of, state, (cue_of, period_s, setpoint_C, gains, bias_A))
 

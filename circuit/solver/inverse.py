@@ -160,7 +160,7 @@ def regulated(
 
     `rest` has current and state before; `gain` is that of the current source.
     """
-    from .kernel_follow import KD, KI, KP
+    from .kernel_regulate import KD, KI, KP
 
     lane, gains = np.zeros(1, dtype=np.int64), np.array([gains_of(rig)])
     gains[:, [KP, KI, KD]] *= gain

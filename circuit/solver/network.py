@@ -1,15 +1,9 @@
-"""The circuit as arrays for stepping, with the heat balance of its plates.
+"""The circuit as arrays for stepping.
 
 State vector: hot plate, cold plate (the display), skin lumps from the surface down, then a passive heat sink of a rig
 that has one, deep node (constant), all in °C.
-
-The functions of the plates are plain Python, which the kernels compile as they are (so none of them calls another) and
-the steady state runs uncompiled. The hot plate enters through `base` (W), the heat that reaches it without current, and
-`total` (W/K), its conductance to everything around it: base = C_h/δ·T_h + T_s/R_s + T_c/Θ, total = C_h/δ + 1/R_s + 1/Θ,
-where δ is the time step (C_h/δ = 0 at rest) and T_s the temperature of the heat sink.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -17,7 +11,6 @@ from functools import lru_cache
 import numpy as np
 
 from ..arrays import Array, Index
-from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..rig.skin import SkinColumn
 
@@ -44,63 +37,6 @@ TEMPERATURE, INTEGRAL, POWER, REST_POWER = range(4)
 """Places in the state of a heat sink with a controller: °C, integral of its error K·s, power W now and at rest."""
 
 SINK_NUMBERS = 4
-
-
-def hot_plate_C(current: float, base: float, total: float, alpha: float, ohm: float) -> float:
-    """Hot-plate temperature in °C at a current in A: T_h = (base + αI·273.15 K + I²R/2) / (total − αI)."""
-    heat = base + alpha * current * ZERO_C_IN_K + 0.5 * ohm * current * current
-    return heat / (total - alpha * current)
-
-
-def greatest_cooling_A(cold: float, base: float, total: float, alpha: float, ohm: float, leak: float) -> float:
-    """Current in A at which the most heat is absorbed; more current than that heats.
-
-    It is below αT_c/R, since the hot plate warms with it: I = (αT_c − (α·T_h + I·R)/Θ / (total − αI)) / R, iterated, in
-    kelvin.
-    """
-    absolute = cold + ZERO_C_IN_K
-    current = alpha * absolute / ohm
-    for _ in range(30):
-        under = total - alpha * current
-        hot = (base + alpha * current * ZERO_C_IN_K + 0.5 * ohm * current * current) / under
-        better = (alpha * absolute - leak * (alpha * (hot + ZERO_C_IN_K) + ohm * current) / under) / ohm
-        if abs(better - current) < 1e-10:
-            return better
-        current = better
-    return current
-
-
-def current_for_heat_A(
-    heat: float,
-    cold: float,
-    base: float,
-    total: float,
-    alpha: float,
-    ohm: float,
-    leak: float,
-    greatest: float,
-    guess: float,
-    close: float,
-) -> float:
-    """Smaller current in A that absorbs `heat` (W); `greatest` where the module cannot absorb that much.
-
-    The smaller root of αT_c·I − I²R/2 = heat + (T_h(I) − T_c)/Θ, with T_h from the previous iterate, from `guess` (A)
-    until it moves by less than `close` (A).
-    """
-    half = alpha * (cold + ZERO_C_IN_K)
-    current = guess
-    for _ in range(60):
-        hot = (base + alpha * current * ZERO_C_IN_K + 0.5 * ohm * current * current) / (total - alpha * current)
-        root = half * half - 2.0 * ohm * (heat + leak * (hot - cold))
-        if root < 0.0:
-            return greatest
-        better = (half - math.sqrt(root)) / ohm
-        if better > greatest:
-            return greatest
-        if abs(better - current) < close:
-            return better
-        current = better
-    return current
 
 
 RECORDED = (

@@ -9,7 +9,8 @@ from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from . import network as net
-from .network import Network, current_for_heat_A, greatest_cooling_A, hot_plate_C, network_of
+from .network import Network, network_of
+from .plates import current_for_heat_A, greatest_cooling_A, hot_plate_C
 
 
 def _plates(network: Network, in_the_end: bool = False) -> tuple[float, float, float, float, float]:

@@ -12,7 +12,7 @@ from types import FunctionType, MappingProxyType, NoneType, UnionType
 from typing import Any, Literal, Self, TypeVar, Union, cast, get_args, get_origin, is_typeddict
 
 from ..near_words import did_you_mean
-from .context import clean
+from .clean_text import clean
 
 F = TypeVar("F", bound=Callable[..., Any])
 RENAMED = {"norm": "memory now", "intervals": "parameters in Python"}

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..number_text import count_of
 from .arguments import InputError
-from .context import clean
+from .clean_text import clean
 
 # Characters of a line that an error shows.
 WIDEST = 110

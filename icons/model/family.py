@@ -7,7 +7,8 @@ from fractions import Fraction
 from math import prod
 
 from ..drawn import Drawn
-from .context import Context, Metadata, name_fault
+from .clean_text import name_fault
+from .context import Context, Metadata
 from .icon import Icon, rest_level
 from .members import HOLE, Expander, Extremes, check_family
 from .parameter import Parameter, Slot, slot_fault

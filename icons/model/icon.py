@@ -10,7 +10,8 @@ from typing import Self
 from ..drawn import Drawn
 from .arguments import checked
 from .check import ASSUMED_BASELINE_C, Problem, survey
-from .context import Context, Metadata, name_fault
+from .clean_text import name_fault
+from .context import Context, Metadata
 from .corners import Corners, Quantity, corners
 from .errors import CueError, CueErrors
 from .format import icon_text, statement_text

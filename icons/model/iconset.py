@@ -10,7 +10,8 @@ from typing import overload
 from ..atomic import complete_or_absent
 from ..drawn import Drawn
 from .arguments import InputError, checked
-from .context import Context, Metadata, name_fault, text_fault
+from .clean_text import name_fault, text_fault
+from .context import Context, Metadata
 from .family import Family
 from .format import set_text
 from .icon import Icon, content_hash, played_icons

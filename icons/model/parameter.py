@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
-from .context import name_fault
+from .clean_text import name_fault
 from .statements import Repeat, Statement
 from .units import KIND_WORDS, UNITS, Control, Kind, decimal_text, exact_number, fault
 

@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import Literal
 
 from ..files.measured_table import measured, missing
-from ..files.shipped import bytes_of
+from ..files.read_limited import bytes_of
 from ..files.table import Table, read_table
 from ..files.units import like_units_of_time
 from ..model.arguments import InputError, checked
-from ..model.context import Context, name_fault
+from ..model.clean_text import name_fault
+from ..model.context import Context
 from ..model.errors import CueErrors, whole_file
 from ..model.icon import Icon
 from ..model.statements import Hold, Ramp, Rest, Return, Statement, Step

@@ -108,7 +108,7 @@ class Commands(TyperGroup):
             place = f"{error.filename}: " if error.filename else ""
             fail(f"{place}{error.strerror or error}")
         except (EOFError, UnpicklingError):  # as numba reads what a crash of the machine left half-written
-            from thermicon.icons.atomic import cache_folder
+            from thermicon.icons.cache_folder import cache_folder
 
             fail(f"machine code in {cache_folder() / 'compiled'} is damaged: delete this folder; it is made again")
         except RecursionError:

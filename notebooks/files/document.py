@@ -11,7 +11,7 @@ from typing import Literal
 
 from thermicon.circuit.inputs import read_bytes
 from thermicon.icons.atomic import OutputError, complete_or_absent
-from thermicon.icons.files.shipped import NotRegular, TooLarge, read_limited
+from thermicon.icons.files.read_limited import NotRegular, TooLarge, read_limited
 
 from .outputs import check_output
 from .versions import Version, Versions

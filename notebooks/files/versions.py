@@ -12,7 +12,7 @@ from typing import Annotated
 from pydantic import Field, TypeAdapter, ValidationError
 
 from thermicon.icons.atomic import OutputError, complete_or_absent
-from thermicon.icons.files.shipped import NotRegular, TooLarge, read_limited
+from thermicon.icons.files.read_limited import NotRegular, TooLarge, read_limited
 
 EVERY_S = 0.5
 """Shortest time between two writings of unsaved text, in s; a killed process loses what was typed for this long."""

@@ -18,7 +18,7 @@ import numba
 import pytest
 
 from thermicon.circuit import compiled
-from thermicon.icons.atomic import NotPrivate, private_folder, remove_unused
+from thermicon.icons.cache_folder import NotPrivate, private_folder, remove_unused
 
 ONLY_POSIX = pytest.mark.skipif(sys.platform == "win32", reason="owners and modes are those of POSIX")
 

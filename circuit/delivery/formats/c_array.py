@@ -11,7 +11,7 @@ from importlib import resources
 
 import numpy as np
 
-from thermicon.icons.model.context import clean_line
+from thermicon.icons.model.clean_text import clean_line
 
 from ...arrays import Array
 from ..delivered_drive import DeliveredDrive

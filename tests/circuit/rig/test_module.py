@@ -12,7 +12,7 @@ from thermicon.circuit import Rig
 from thermicon.circuit.rig.module import ZERO_C_IN_K, Datasheet, Extraction, Peltier, at_mean_C
 from thermicon.circuit.rig.modules import build_of, load_module, module_names
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.solver.network import current_for_heat_A, greatest_cooling_A, hot_plate_C
+from thermicon.circuit.solver.plates import current_for_heat_A, greatest_cooling_A, hot_plate_C
 
 MODULE = Peltier(0.0521, 6.35, 1 / 0.1524, 2.6, 2.6)
 TC, TH = 300 - ZERO_C_IN_K, 313.15 - ZERO_C_IN_K
