@@ -127,11 +127,10 @@ def improve_command(
             if path.suffix == ".cue":
                 write_text(str(_best_of(tried, icons, where)), path)
             elif path.suffix.lower() in FIGURE_SUFFIXES:
-                FigureOptions(path).write(tried.plot().figure)
+                FigureOptions(path).write(lambda: tried.plot().figure)
             else:
                 write_frame(tried.to_frame(), path)
-        if figure.figure is not None:
-            figure.write(tried.plot().figure)
+        figure.write(lambda: tried.plot().figure)
         told = frontier_report(tried, icons.title, after_choices(tried, command, written))
     elif searched:
         count = USUAL_EVALUATIONS if evaluations is None else evaluations

@@ -236,16 +236,16 @@ class FigureOptions(Options):
         if self.figure is not None:
             from ..figures.set_figures import narrowest_mm, set_figure
 
-            self.write(set_figure(ranking, self.look))
+            self.write(lambda: set_figure(ranking, self.look))
             if self.look.width_mm is not None and self.look.width_mm < (least := narrowest_mm(ranking.labels)):
                 note(f"note: {len(ranking.labels)} icons can be read in a figure from --paper {least:.0f}mm on")
 
-    def write(self, drawn: Any) -> None:
-        """Write a figure to its file, and say so; nothing where none was asked for."""
+    def write(self, draw: Callable[[], Any]) -> None:
+        """Draw a figure and write it to its file, and say so; nothing is drawn where none was asked for."""
         if self.figure is not None:
             from ..figures.print_figure import write_figure
 
-            write_figure(drawn, self.figure, self.look)
+            write_figure(draw(), self.figure, self.look)
             note(f"wrote {self.figure}")
 
 

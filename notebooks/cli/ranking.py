@@ -206,8 +206,7 @@ def doubt_about(
     if json is not None:
         keys = {"norm" if name == "memory" else name: value for name, value in asdict(found).items()}
         write_text(dumps(keys, ensure_ascii=False, indent=1) + "\n", json)
-    if figure.figure is not None:
-        figure.write(found.plot().figure)
+    figure.write(lambda: found.plot().figure)
     if json != STDOUT:
         show(doubt_report(found, icons.title))
 

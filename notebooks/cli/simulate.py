@@ -6,6 +6,7 @@ import json
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -15,6 +16,7 @@ import typer
 from thermicon.icons.atomic import complete_or_absent
 
 from ..figures.overview import FELT_TAIL_S, felt_overview
+from ..figures.session_figure import session_figure
 from ..files.outputs import (
     NETLIST_SUFFIXES,
     STDOUT,
@@ -174,7 +176,7 @@ def simulate_file(
         typer.echo(f"Next: {after_simulating(cured, lost, commands([file], asked, CrowdOptions()))}")
     for each, picture in zip(icons, pictures, strict=False):
         played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
-        replace(figure, figure=picture).write(felt_overview(played, rig.changes))
+        replace(figure, figure=picture).write(partial(felt_overview, played, rig.changes))
 
 
 def simulate_drive(
@@ -188,8 +190,7 @@ def simulate_drive(
     with noted():
         played = read_drive(file, hold=hold, columns=theirs)
     tell([simulate_current(played, rig, rate_Hz=rate_Hz)], rig, output, [None])
-    if figure.figure is not None:
-        figure.write(felt_overview(simulate_current(played, rig), rig.changes))
+    figure.write(lambda: felt_overview(simulate_current(played, rig), rig.changes))
 
 
 def _check_outputs(read: str | Path, output: Path | None, pictures: Sequence[Path]) -> None:
@@ -291,10 +292,7 @@ def session_file(
         write_text(session_text(session, icons, rig), output)
     elif output is not None:
         write_traces([session.trace], output)
-    if figure.figure is not None:
-        from ..figures.session_figure import session_figure
-
-        figure.write(session_figure(session))
+    figure.write(lambda: session_figure(session))
     show(session_report(session))
     note(CAUTION)
 
