@@ -159,7 +159,6 @@ def simulate_file(
 ) -> None:
     """Play the icons of a file (or the one named) on the rig; write the traces, or print a summary of each."""
     from thermicon.circuit import nearest_reachable, simulate
-    from thermicon.circuit.safety.verdict import judge_safety
 
     whole = read_set([file])
     icons, rig = pick(whole, icon), asked.load(whole, file)
@@ -169,9 +168,9 @@ def simulate_file(
     _check_outputs(file, output, pictures)
     traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
     near = [None if one.reachable else nearest_reachable(each, rig) for each, one in zip(icons, traces, strict=True)]
-    tell(traces, rig, output, [None if found is None else found.sentence for found in near])
+    safe = tell(traces, rig, output, [None if found is None else found.sentence for found in near])
     if output is None:
-        lost = [str(one.icon) for one in traces if not (one.reachable and judge_safety(one).safe)]
+        lost = [str(one.icon) for one, kept in zip(traces, safe, strict=True) if not (one.reachable and kept)]
         cured = [str(one.icon) for one, found in zip(traces, near, strict=True) if found is not None]
         typer.echo(f"Next: {after_simulating(cured, lost, commands([file], asked, CrowdOptions()))}")
     for each, picture in zip(icons, pictures, strict=False):
@@ -200,10 +199,14 @@ def _check_outputs(read: str | Path, output: Path | None, pictures: Sequence[Pat
         check_output(output, TRACE_SUFFIXES, "a trace")
 
 
-def tell(traces: Sequence[Trace], rig: Rig, output: Path | None, cures: Sequence[str | None]) -> None:
-    """Warn, and write the traces or print a summary of each."""
-    for trace in traces:
-        for warning in (*trace.warnings, *trace.beyond, *unsafe(trace)):
+def tell(traces: Sequence[Trace], rig: Rig, output: Path | None, cures: Sequence[str | None]) -> list[bool]:
+    """Warn, and write the traces or print a summary of each; returns which are safe."""
+    from thermicon.circuit.safety.verdict import judge_safety
+
+    verdicts = [judge_safety(trace) for trace in traces]
+    for trace, verdict in zip(traces, verdicts, strict=True):
+        past = [f"{'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in verdict.findings]
+        for warning in (*trace.warnings, *trace.beyond, *past):
             if warning not in rig.warnings:  # already reported when the rig was loaded
                 note(f"warning: {trace.icon or 'drive'}: {warning}")
     for trace, better in zip(traces, cures, strict=True):
@@ -213,14 +216,7 @@ def tell(traces: Sequence[Trace], rig: Rig, output: Path | None, cures: Sequence
             typer.echo(describe(trace) + (f"\n  nearest   {better}" if better else ""))
     if output is not None:
         write_traces(traces, output)
-
-
-def unsafe(trace: Trace) -> list[str]:
-    """Return one sentence per exceeded safety limit."""
-    from thermicon.circuit.safety.verdict import judge_safety
-
-    findings = judge_safety(trace).findings
-    return [f"{'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in findings]
+    return [verdict.safe for verdict in verdicts]
 
 
 def write_traces(traces: Sequence[Trace], output: Path) -> None:
