@@ -25,6 +25,7 @@ from .options import (
     RigOptions,
     commands,
     flag,
+    goal_of,
     opt,
     out,
     read_set,
@@ -89,9 +90,8 @@ def improve_command(
     What is found is the best for the model: test it with people.
     """
     from thermicon.icons import Family
-    from thermicon.perception import Goal
 
-    wanted = Goal.parse(", ".join(goal)) if goal else None
+    wanted = goal_of(goal)
     icons = read_set(files)
     has_families = any(isinstance(entry, Family) for entry in icons.entries)
     as_they_are = choose is not None or up_to is not None or edits

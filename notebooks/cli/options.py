@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
-    from thermicon.perception import Ranking
+    from thermicon.perception import Goal, Ranking
     from thermicon.perception.observer.observer_model import ObserverModel
 
 MOST_PEOPLE, MOST_DRAWS, LARGEST_SEED = 100_000, 10_000, 2**32 - 1
@@ -104,6 +104,13 @@ Goals = Annotated[
         "TEXT", 'What is wanted, such as "90 % correct for 95 % of people, time <= 10 s, safety green".', name="--goal"
     ),
 ]
+
+
+def goal_of(texts: list[str] | None) -> Goal | None:
+    """The goal of all ``--goal`` together; None where none was given."""
+    from thermicon.perception import Goal
+
+    return Goal.parse(", ".join(texts)) if texts else None
 
 
 class Options:
