@@ -113,6 +113,10 @@ def goal_of(texts: list[str] | None) -> Goal | None:
     return Goal.parse(", ".join(texts)) if texts else None
 
 
+FILES = ("rig", "observer")
+"""Options of groups whose values are files, or names of what is shipped."""
+
+
 class Options:
     """A group of options: a frozen dataclass whose fields carry their options."""
 
@@ -123,7 +127,7 @@ class Options:
         for field in own:
             value = getattr(self, field.name)
             for each in [] if value == field.default else value if isinstance(value, list) else [value]:
-                shown = each.name if isinstance(each, Path) and not paths else str(each)
+                shown = Path(each).name if field.name in FILES and not paths else str(each)
                 words += [f"--{field.name.replace('_', '-')}", shown]
         return words
 
@@ -156,11 +160,6 @@ class RigOptions(Options):
         for warning in () if icons is None else site_warnings(file, icons, rig):
             note(f"warning: {warning}")
         return rig
-
-    def words(self, *, paths: bool = False) -> list[str]:
-        """As for any group, with the rig by its path or the name of its file."""
-        name = self.rig if paths or self.rig is None else Path(self.rig).name
-        return super(RigOptions, replace(self, rig=name)).words(paths=paths)
 
 
 @dataclass(frozen=True)
@@ -329,15 +328,6 @@ def pick(icons: IconSet, name: str | None, most: int = MOST_ICONS) -> list[Icon]
             f"there are {len(icons):,} icons, and at most {most:,} are allowed; name one, such as {first}", "--icon"
         )
     return list(icons)
-
-
-def only(icons: IconSet, name: str | None, where: str) -> Icon:
-    """Return the icon of this name, or the only one there is; a usage error that lists them where there are more."""
-    found = pick(icons, name)
-    if len(found) > 1:
-        names = ", ".join([icon.name for icon in found[:20]] + ["…"] * (len(found) > 20))
-        raise usage(f"{where} has {len(found)} icons; name one of {names}", "--icon")
-    return found[0]
 
 
 def write_text(text: str, output: Path, more: str = "", encoding: str = "utf-8") -> None:

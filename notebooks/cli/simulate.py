@@ -40,7 +40,6 @@ from .options import (
     Theirs,
     commands,
     flag,
-    only,
     opt,
     out,
     pick,
@@ -243,7 +242,11 @@ def netlist_file(file: str, icon: str | None, asked: RigOptions, tail_s: float, 
     record = f"{output.stem}.txt" if output.suffix.lower() == NGSPICE else None
     check_separate([file], [output])
     icons = read_set([file])
-    played, rig = only(icons, icon, file), asked.load(icons, file)
+    played, *others = pick(icons, icon)
+    if others:
+        names = ", ".join([each.name for each in (played, *others[:19])] + ["…"] * (len(others) > 19))
+        raise usage(f"{file} has {len(others) + 1} icons; name one of {names}", "--icon")
+    rig = asked.load(icons, file)
     trace = simulate(played, rig, tail_s=tail_s)
     plan = design(played, rig, float(trace.time_s[-1]))
     title = f"{played.name} of {Path(file).name}"
