@@ -43,13 +43,7 @@ def fit_command(
         ),
     ] = None,
     output: Annotated[
-        Path | None,
-        opt(
-            "NEW.toml",
-            "Write the fitted rig as a rig file.",
-            name="-o --output",
-            readable=False,
-        ),
+        Path | None, opt("NEW.toml", "Write the fitted rig as a rig file.", name="-o --output", readable=False)
     ] = None,
     plan: Annotated[
         bool, flag("--plan", "Without a log: how well each choice of sensors will identify these keys.")

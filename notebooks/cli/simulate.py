@@ -17,13 +17,7 @@ from thermicon.icons.atomic import complete_or_absent
 
 from ..figures.overview import FELT_TAIL_S, felt_overview
 from ..figures.session_figure import session_figure
-from ..files.outputs import (
-    NETLIST_SUFFIXES,
-    STDOUT,
-    TRACE_SUFFIXES,
-    check_output,
-    check_separate,
-)
+from ..files.outputs import NETLIST_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import note, noted, progress_bar, usage
 from ..report.following import after_simulating
 from ..report.gate_words import CAUTION

@@ -28,10 +28,7 @@ KEPT = "give another folder with -o, such as -o study-2"
 
 def study_command(
     file: Annotated[str, typer.Argument(metavar="STUDY.toml", help="A study file, or example for the shipped one.")],
-    folder: Annotated[
-        Path,
-        out("DIR", "Folder for the files of the study.", "-o", "--output"),
-    ],
+    folder: Annotated[Path, out("DIR", "Folder for the files of the study.", "-o", "--output")],
 ) -> None:
     """Prepare an experiment: orders, pauses, judged drives, a PsychoPy script, and tables of events.
 
