@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy
 
+from thermicon.circuit.arrays import Array
 from thermicon.circuit.inputs import read_bytes, table_fault
 from thermicon.circuit.solver.trace import COLUMNS
 from thermicon.icons.files.measured_table import measured, missing
@@ -22,11 +23,8 @@ from ..messages import usage
 
 if TYPE_CHECKING:
     import pandas as pd
-    from numpy.typing import NDArray
 
     from thermicon.circuit import Trace
-
-    Array = NDArray[numpy.float64]
 
 MOST_MB = 200.0
 MOST_ROWS = 10_000_000
