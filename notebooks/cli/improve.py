@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from thermicon.icons.number_text import number, percent
+from thermicon.perception.selection.request import Objective
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import bars_aside, fail, note, progress_bar, shown_at_once, usage
@@ -43,7 +44,6 @@ if TYPE_CHECKING:
     from ..report.blocks import Block
 
 USUAL_EVALUATIONS, MOST_CHOSEN = 2000, 64
-Objective = Literal["worst", "correct", "bits", "bits-per-s"]
 
 
 def improve_command(
