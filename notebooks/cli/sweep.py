@@ -182,7 +182,7 @@ def _receptors(trace: Trace) -> dict[str, float | None]:
     from thermicon.perception.observer.observer import CHANNELS
     from thermicon.perception.sensation.features import attack_K_per_s, delay_s, peak_change_K
 
-    seen = [(what(trace, channel)) for channel in CHANNELS for what in (peak_change_K, attack_K_per_s, delay_s)]
+    seen = [what(trace, channel) for channel in CHANNELS for what in (peak_change_K, attack_K_per_s, delay_s)]
     return dict(zip(RECEPTORS, seen, strict=True))
 
 
