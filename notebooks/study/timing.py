@@ -39,7 +39,7 @@ class Gap:
     gap_s: float
     reason: str
     carry_over_d_prime: float
-    carried_by: tuple[str, str] | None
+    carried_by: tuple[str, str]
     tried: tuple[tuple[float, float], ...] = ()
 
 
