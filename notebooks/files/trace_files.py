@@ -179,10 +179,9 @@ def unit_of_difference(column: str) -> str:
 
 def quantity(column: str) -> str:
     """Name of a column as people say it."""
-    bare = column.removesuffix("_W_per_m2")
-    if bare.startswith("heat_flow_"):
-        return f"heat flow, {bare.removeprefix('heat_flow_').replace('_', ' ')}"
-    return bare.rpartition("_")[0].replace("_", " ") if bare == column else bare.replace("_", " ")
+    if column.endswith("_W_per_m2"):
+        return f"heat flow, {column.removeprefix('heat_flow_').removesuffix('_W_per_m2').replace('_', ' ')}"
+    return column.rpartition("_")[0].replace("_", " ")
 
 
 def with_unit(value: float, unit: str) -> str:
