@@ -140,7 +140,8 @@ def rank_command(
         check_output(json, (".json",), "JSON")
     check_separate(files, [json, report, figure.figure])
     here = read_workers(workers)
-    for option, value in {"--doubt": doubt, "--report": report, "--goal": goal}.items():
+    about_people: dict[str, object] = {"--doubt": doubt, "--report": report, "--goal": goal}
+    for option, value in about_people.items():
         if value and crowd.memory == "rules":
             raise usage("is about predictions for people: leave out --by rules", option)
     wanted = goal_of(goal)
