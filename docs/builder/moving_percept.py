@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.figure import Figure
 
-if TYPE_CHECKING:
-    from thermicon.circuit import Trace
-    from thermicon.perception import Percept
+from thermicon.circuit import Rig, Trace, simulate
+from thermicon.circuit.solver.draw import COOL, WARM, plot_temperatures
+from thermicon.icons import load_library
+from thermicon.icons.pictures.draw import as_svg
+from thermicon.perception import Percept, perceive
 
 ICON, RIG, TAIL_S = "cold-to-warm", "thenar", 2.0
 WIDE_IN, HIGH_IN, STEP_S = 7.2, 4.2, 0.25
@@ -34,11 +36,6 @@ STYLE = """<style>
 
 def moving_svg(trace: Trace, percept: Percept) -> str:
     """Draw a run and what is felt of it, with a line that moves over both and bars as high as what is felt."""
-    from matplotlib.figure import Figure
-
-    from thermicon.circuit.solver.draw import COOL, WARM, plot_temperatures
-    from thermicon.icons.pictures.draw import as_svg
-
     figure, end_s = Figure(figsize=(WIDE_IN, HIGH_IN)), float(percept.time_s[-1])
     places = {"wspace": 0.06, "hspace": 0.14, "left": 0.085, "right": 0.99, "bottom": 0.13, "top": 0.92}
     (above, key), (below, bars) = figure.subplots(2, 2, width_ratios=(3.6, 1.0), gridspec_kw=places)
@@ -77,10 +74,6 @@ def moving_svg(trace: Trace, percept: Percept) -> str:
 
 def moving_percept(write: Callable[[str, str | bytes], None]) -> str:
     """Write the moving picture of one icon, and return the Markdown that shows it."""
-    from thermicon.circuit import Rig, simulate
-    from thermicon.icons import load_library
-    from thermicon.perception import perceive
-
     trace = simulate(load_library("six-icons")[ICON], Rig.load(RIG), tail_s=TAIL_S)
     moves = moving_svg(trace, perceive(trace))
     write("moves.svg", moves)

@@ -9,7 +9,6 @@ import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from evidence_tables import TABLES as INFERRED
@@ -74,7 +73,6 @@ class LeftOutRow(OfRow):
 SCORES, FORMS, LEFT_OUT = "variant-scores.csv", "memory_forms.csv", "left-out.csv"
 
 
-@lru_cache(maxsize=1)
 def load_left_out() -> tuple[LeftOutRow, ...]:
     """Left-out predictions of every row by draws."""
     return tuple(read_rows(LEFT_OUT, LeftOutRow))

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from thermicon.circuit import Rig
+from thermicon.circuit import Rig
+from thermicon.icons.pictures.draw import as_svg
 
 LEFT, ROW, LETTERS, SKIN_HIGH, KEYS_WIDE = 24.0, 10.5, 6.0, 210.0, 143.0
 """Points: margin, one line, its letters, all layers of skin, the longest key."""
@@ -32,8 +32,6 @@ BELOW = {"blood": ("#efe0e0", ("skin.rest_C", "blood.density_kg_per_m3", "blood.
 
 def plot_stack(rig: Rig, width_mm: float = 107.0) -> Axes:
     """Draw the parts of a rig with a module and an ideal heat sink, each joined to its keys and their values."""
-    from matplotlib.figure import Figure
-
     file: Any = json.loads(rig.document)
     wide, top, depth_mm, free = width_mm / 25.4 * 72.0, 0.0, 0.0, 0.0
     right, scale = wide - LEFT - KEYS_WIDE - 12.0, SKIN_HIGH / np.log1p(1e3 * rig.skin.thickness_m / LINEAR_MM)
@@ -83,9 +81,6 @@ def plot_stack(rig: Rig, width_mm: float = 107.0) -> Axes:
 
 def rig_stack(write: Callable[[str, str | bytes], None]) -> str:
     """Write the stack of the rig that most pages use, and return the Markdown that shows it."""
-    from thermicon.circuit import Rig
-    from thermicon.icons.pictures.draw import as_svg
-
     write("reference/rig-stack.svg", as_svg(plot_stack(Rig.load("thenar"))))
     what = "The rig thenar: heat sink, Peltier module, contact, layers of skin, blood, and the keys of each"
     return f"```{{image}} rig-stack.svg\n:alt: {what}\n:width: 600px\n```\n"

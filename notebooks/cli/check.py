@@ -41,23 +41,18 @@ def check_command(
     if explain is not None:
         if files or fix:
             raise usage("stands alone: leave out FILE and the other options", "--explain")
-        explain_error(explain)
+        from thermicon.icons.files.catalogue import explain as explained
+
+        try:
+            typer.echo(explained(explain))
+        except ValueError as unknown:
+            raise usage(str(unknown), "--explain") from None
         return
     if not files:
         raise MissingArgument("argument 'FILE...'")
     if fix:
         format_files(files)
     check(files)
-
-
-def explain_error(code: str) -> None:
-    """Explain an error in a cue file: its meaning, an example, and the corrected example."""
-    from thermicon.icons.files.catalogue import explain
-
-    try:
-        typer.echo(explain(code))
-    except ValueError as unknown:
-        raise usage(str(unknown), "--explain") from None
 
 
 def format_files(files: Sequence[str]) -> None:

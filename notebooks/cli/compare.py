@@ -12,6 +12,7 @@ from thermicon.icons.files.table_text import TABLES
 from thermicon.icons.number_text import count_of, number
 from thermicon.perception.criteria import MOST_ICONS
 
+from ..figures.compare_figure import compare_figure
 from ..files.outputs import check_separate
 from ..files.trace_files import Curves, TraceFileError, align, curves_of, differences, quantity, read_curves
 from ..messages import load_rig, note, progress_bar, usage
@@ -84,11 +85,7 @@ def compare_command(
             return
     else:
         made = [_tables(both, icon, theirs_of(column), align)]
-    if figure.figure is not None:
-        from ..figures.compare_figure import compare_figure
-
-        pairs = [(each.title, each.both) for each in made]
-        figure.write(compare_figure(pairs, across=figure.look.across(3)))
+    figure.write(lambda: compare_figure([(each.title, each.both) for each in made], figure.look.across(3)))
     if not any(differences(each.both)["largest"].any() for each in made):
         typer.echo(f"{first} and {second} play alike: no difference in any curve")
         return

@@ -25,10 +25,7 @@ SUFFIXES = (".cue", ".json")
 
 def convert_command(
     file: Annotated[str, typer.Argument(metavar="FILE", help="A cue file, a table or a shipped set.")],
-    output: Annotated[
-        Path,
-        out("OUT", "The file to write: .cue or .json.", "-o", "--output"),
-    ],
+    output: Annotated[Path, out("OUT", "The file to write: .cue or .json.", "-o", "--output")],
     tolerance: Annotated[
         float | None,
         opt("K", "For a table: largest deviation of the icon from the recording, in K.", name="--tolerance"),

@@ -21,9 +21,7 @@ REPORTED = ("numpy", "scipy", "pandas", "matplotlib", "numba", "pydantic", "type
 CURE = "install thermicon again in a new environment; if that does not help, report it with doctor --json"
 
 
-def doctor_command(
-    json: Annotated[bool, flag("--json", "Print one JSON object instead of lines.")] = False,
-) -> None:
+def doctor_command(json: Annotated[bool, flag("--json", "Print one JSON object instead of lines.")] = False) -> None:
     """Check the installation: Python, versions of packages, the cache, and the numbers of one icon.
 
     Every line is ok, a note (something that can be done without) or a fault, with its cure. With a fault, the exit code

@@ -43,13 +43,7 @@ def fit_command(
         ),
     ] = None,
     output: Annotated[
-        Path | None,
-        opt(
-            "NEW.toml",
-            "Write the fitted rig as a rig file.",
-            name="-o --output",
-            readable=False,
-        ),
+        Path | None, opt("NEW.toml", "Write the fitted rig as a rig file.", name="-o --output", readable=False)
     ] = None,
     plan: Annotated[
         bool, flag("--plan", "Without a log: how well each choice of sensors will identify these keys.")
@@ -87,6 +81,7 @@ def fit_command(
     if not logs:
         raise usage("give a LOG, or --plan to see what a log would identify", "LOG")
     from thermicon.circuit import fit
+    from thermicon.circuit.fitting.fit_figure import fit_figure
     from thermicon.circuit.fitting.log import read_log
 
     where = rig.load()
@@ -103,10 +98,7 @@ def fit_command(
     fitted = fit(read, where, free=keys, offset_K=offset, fixed_skin=fixed_skin)
     if output is not None:
         write_text(fitted.rig_text(output.stem[:LONGEST_NAME]), output)
-    if figure.figure is not None:
-        from thermicon.circuit.fitting.fit_figure import fit_figure
-
-        figure.write(fit_figure(fitted, 1 if figure.look.narrow else 2))
+    figure.write(lambda: fit_figure(fitted, 1 if figure.look.narrow else 2))
     show(fit_report(fitted, where))
     for sentence in fitted.notes:
         if sentence not in early:

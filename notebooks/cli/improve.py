@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from thermicon.icons.number_text import number, percent
+from thermicon.perception.selection.request import Objective
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import bars_aside, fail, note, progress_bar, shown_at_once, usage
@@ -25,6 +26,7 @@ from .options import (
     RigOptions,
     commands,
     flag,
+    goal_of,
     opt,
     out,
     read_set,
@@ -42,7 +44,6 @@ if TYPE_CHECKING:
     from ..report.blocks import Block
 
 USUAL_EVALUATIONS, MOST_CHOSEN = 2000, 64
-Objective = Literal["worst", "correct", "bits", "bits-per-s"]
 
 
 def improve_command(
@@ -89,9 +90,8 @@ def improve_command(
     What is found is the best for the model: test it with people.
     """
     from thermicon.icons import Family
-    from thermicon.perception import Goal
 
-    wanted = Goal.parse(", ".join(goal)) if goal else None
+    wanted = goal_of(goal)
     icons = read_set(files)
     has_families = any(isinstance(entry, Family) for entry in icons.entries)
     as_they_are = choose is not None or up_to is not None or edits
@@ -127,11 +127,10 @@ def improve_command(
             if path.suffix == ".cue":
                 write_text(str(_best_of(tried, icons, where)), path)
             elif path.suffix.lower() in FIGURE_SUFFIXES:
-                FigureOptions(path).write(tried.plot().figure)
+                FigureOptions(path).write(lambda: tried.plot().figure)
             else:
                 write_frame(tried.to_frame(), path)
-        if figure.figure is not None:
-            figure.write(tried.plot().figure)
+        figure.write(lambda: tried.plot().figure)
         told = frontier_report(tried, icons.title, after_choices(tried, command, written))
     elif searched:
         count = USUAL_EVALUATIONS if evaluations is None else evaluations

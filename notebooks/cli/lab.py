@@ -29,12 +29,7 @@ ENDS_ITSELF_S, TIDIES_UP_S = 3.0, 10.0
 
 def lab_command(
     folder: Annotated[
-        Path,
-        typer.Argument(
-            metavar="DIR",
-            readable=False,
-            help="Folder for the notebooks; it is created if missing.",
-        ),
+        Path, typer.Argument(metavar="DIR", readable=False, help="Folder for the notebooks; it is created if missing.")
     ] = FOLDER,
     files_only: Annotated[bool, flag("--files-only", "Only copy the notebooks, for use in your own Jupyter.")] = False,
     no_browser: Annotated[bool, flag("--no-browser", "Print the address and open no browser.")] = False,

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
-    from thermicon.perception import Ranking
+    from thermicon.perception import Goal, Ranking
     from thermicon.perception.observer.observer_model import ObserverModel
 
 MOST_PEOPLE, MOST_DRAWS, LARGEST_SEED = 100_000, 10_000, 2**32 - 1
@@ -106,6 +106,17 @@ Goals = Annotated[
 ]
 
 
+def goal_of(texts: list[str] | None) -> Goal | None:
+    """The goal of all ``--goal`` together; None where none was given."""
+    from thermicon.perception import Goal
+
+    return Goal.parse(", ".join(texts)) if texts else None
+
+
+FILES = ("rig", "observer")
+"""Options of groups whose values are files, or names of what is shipped."""
+
+
 class Options:
     """A group of options: a frozen dataclass whose fields carry their options."""
 
@@ -116,7 +127,7 @@ class Options:
         for field in own:
             value = getattr(self, field.name)
             for each in [] if value == field.default else value if isinstance(value, list) else [value]:
-                shown = each.name if isinstance(each, Path) and not paths else str(each)
+                shown = Path(each).name if field.name in FILES and not paths else str(each)
                 words += [f"--{field.name.replace('_', '-')}", shown]
         return words
 
@@ -149,11 +160,6 @@ class RigOptions(Options):
         for warning in () if icons is None else site_warnings(file, icons, rig):
             note(f"warning: {warning}")
         return rig
-
-    def words(self, *, paths: bool = False) -> list[str]:
-        """As for any group, with the rig by its path or the name of its file."""
-        name = self.rig if paths or self.rig is None else Path(self.rig).name
-        return super(RigOptions, replace(self, rig=name)).words(paths=paths)
 
 
 @dataclass(frozen=True)
@@ -236,16 +242,16 @@ class FigureOptions(Options):
         if self.figure is not None:
             from ..figures.set_figures import narrowest_mm, set_figure
 
-            self.write(set_figure(ranking, self.look))
+            self.write(lambda: set_figure(ranking, self.look))
             if self.look.width_mm is not None and self.look.width_mm < (least := narrowest_mm(ranking.labels)):
                 note(f"note: {len(ranking.labels)} icons can be read in a figure from --paper {least:.0f}mm on")
 
-    def write(self, drawn: Any) -> None:
-        """Write a figure to its file, and say so; nothing where none was asked for."""
+    def write(self, draw: Callable[[], Any]) -> None:
+        """Draw a figure and write it to its file, and say so; nothing is drawn where none was asked for."""
         if self.figure is not None:
             from ..figures.print_figure import write_figure
 
-            write_figure(drawn, self.figure, self.look)
+            write_figure(draw(), self.figure, self.look)
             note(f"wrote {self.figure}")
 
 
@@ -322,15 +328,6 @@ def pick(icons: IconSet, name: str | None, most: int = MOST_ICONS) -> list[Icon]
             f"there are {len(icons):,} icons, and at most {most:,} are allowed; name one, such as {first}", "--icon"
         )
     return list(icons)
-
-
-def only(icons: IconSet, name: str | None, where: str) -> Icon:
-    """Return the icon of this name, or the only one there is; a usage error that lists them where there are more."""
-    found = pick(icons, name)
-    if len(found) > 1:
-        names = ", ".join([icon.name for icon in found[:20]] + ["…"] * (len(found) > 20))
-        raise usage(f"{where} has {len(found)} icons; name one of {names}", "--icon")
-    return found[0]
 
 
 def write_text(text: str, output: Path, more: str = "", encoding: str = "utf-8") -> None:

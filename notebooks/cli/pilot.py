@@ -208,6 +208,7 @@ def condition(
     from thermicon.perception.pilot.observed import observed
     from thermicon.perception.pilot.trials_file import read_trials
 
+    from ..figures.set_figures import observed_figure
     from ..report.pilot_report import observed_report
     from ..report.terminal import show
 
@@ -226,10 +227,7 @@ def condition(
         )
     if json is not None:
         write_text(found.to_json() + "\n", json)
-    if figure.figure is not None:
-        from ..figures.set_figures import observed_figure
-
-        figure.write(observed_figure(found, figure.look))
+    figure.write(lambda: observed_figure(found, figure.look))
     last = KEEP_IT
     if keep is not None and drawn is not None:
         _keep(found, keep, drawn)

@@ -29,6 +29,7 @@ from .options import (
     command_text,
     commands,
     flag,
+    goal_of,
     opt,
     out,
     read_set,
@@ -131,8 +132,6 @@ def rank_command(
     with many draws of the posterior (--people 24 is enough) as new laboratories would see it, and the table says which
     constants their differences come from.
     """
-    from thermicon.perception import Goal
-
     if report is not None:
         check_output(report, (".html", ".htm"), "a report")
         if report == STDOUT:
@@ -141,11 +140,11 @@ def rank_command(
         check_output(json, (".json",), "JSON")
     check_separate(files, [json, report, figure.figure])
     here = read_workers(workers)
-    if crowd.memory == "rules" and (doubt or report is not None):
-        raise usage("is about predictions for people: leave out --by rules", "--doubt" if doubt else "--report")
-    if goal and crowd.memory == "rules":
-        raise usage("is about predictions for people: leave out --by rules", "--goal")
-    wanted = Goal.parse(", ".join(goal)) if goal else None
+    about_people: dict[str, object] = {"--doubt": doubt, "--report": report, "--goal": goal}
+    for option, value in about_people.items():
+        if value and crowd.memory == "rules":
+            raise usage("is about predictions for people: leave out --by rules", option)
+    wanted = goal_of(goal)
     if doubt:
         given = {"--task": task.task, "--goal": goal, "--report": report, "--workers": workers, "--details": details}
         for option, value in {**given, "--tracking": crowd.tracking}.items():
@@ -206,8 +205,7 @@ def doubt_about(
     if json is not None:
         keys = {"norm" if name == "memory" else name: value for name, value in asdict(found).items()}
         write_text(dumps(keys, ensure_ascii=False, indent=1) + "\n", json)
-    if figure.figure is not None:
-        figure.write(found.plot().figure)
+    figure.write(lambda: found.plot().figure)
     if json != STDOUT:
         show(doubt_report(found, icons.title))
 

@@ -6,6 +6,7 @@ import json
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -15,13 +16,8 @@ import typer
 from thermicon.icons.atomic import complete_or_absent
 
 from ..figures.overview import FELT_TAIL_S, felt_overview
-from ..files.outputs import (
-    NETLIST_SUFFIXES,
-    STDOUT,
-    TRACE_SUFFIXES,
-    check_output,
-    check_separate,
-)
+from ..figures.session_figure import session_figure
+from ..files.outputs import NETLIST_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import note, noted, progress_bar, usage
 from ..report.following import after_simulating
 from ..report.gate_words import CAUTION
@@ -38,7 +34,6 @@ from .options import (
     Theirs,
     commands,
     flag,
-    only,
     opt,
     out,
     pick,
@@ -157,7 +152,6 @@ def simulate_file(
 ) -> None:
     """Play the icons of a file (or the one named) on the rig; write the traces, or print a summary of each."""
     from thermicon.circuit import nearest_reachable, simulate
-    from thermicon.circuit.safety.verdict import judge_safety
 
     whole = read_set([file])
     icons, rig = pick(whole, icon), asked.load(whole, file)
@@ -167,14 +161,14 @@ def simulate_file(
     _check_outputs(file, output, pictures)
     traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
     near = [None if one.reachable else nearest_reachable(each, rig) for each, one in zip(icons, traces, strict=True)]
-    tell(traces, rig, output, [None if found is None else found.sentence for found in near])
+    safe = tell(traces, rig, output, [None if found is None else found.sentence for found in near])
     if output is None:
-        lost = [str(one.icon) for one in traces if not (one.reachable and judge_safety(one).safe)]
+        lost = [str(one.icon) for one, kept in zip(traces, safe, strict=True) if not (one.reachable and kept)]
         cured = [str(one.icon) for one, found in zip(traces, near, strict=True) if found is not None]
         typer.echo(f"Next: {after_simulating(cured, lost, commands([file], asked, CrowdOptions()))}")
     for each, picture in zip(icons, pictures, strict=False):
         played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
-        replace(figure, figure=picture).write(felt_overview(played, rig.changes))
+        replace(figure, figure=picture).write(partial(felt_overview, played, rig.changes))
 
 
 def simulate_drive(
@@ -188,8 +182,7 @@ def simulate_drive(
     with noted():
         played = read_drive(file, hold=hold, columns=theirs)
     tell([simulate_current(played, rig, rate_Hz=rate_Hz)], rig, output, [None])
-    if figure.figure is not None:
-        figure.write(felt_overview(simulate_current(played, rig), rig.changes))
+    figure.write(lambda: felt_overview(simulate_current(played, rig), rig.changes))
 
 
 def _check_outputs(read: str | Path, output: Path | None, pictures: Sequence[Path]) -> None:
@@ -199,10 +192,14 @@ def _check_outputs(read: str | Path, output: Path | None, pictures: Sequence[Pat
         check_output(output, TRACE_SUFFIXES, "a trace")
 
 
-def tell(traces: Sequence[Trace], rig: Rig, output: Path | None, cures: Sequence[str | None]) -> None:
-    """Warn, and write the traces or print a summary of each."""
-    for trace in traces:
-        for warning in (*trace.warnings, *trace.beyond, *unsafe(trace)):
+def tell(traces: Sequence[Trace], rig: Rig, output: Path | None, cures: Sequence[str | None]) -> list[bool]:
+    """Warn, and write the traces or print a summary of each; returns which are safe."""
+    from thermicon.circuit.safety.verdict import judge_safety
+
+    verdicts = [judge_safety(trace) for trace in traces]
+    for trace, verdict in zip(traces, verdicts, strict=True):
+        past = [f"{'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in verdict.findings]
+        for warning in (*trace.warnings, *trace.beyond, *past):
             if warning not in rig.warnings:  # already reported when the rig was loaded
                 note(f"warning: {trace.icon or 'drive'}: {warning}")
     for trace, better in zip(traces, cures, strict=True):
@@ -212,14 +209,7 @@ def tell(traces: Sequence[Trace], rig: Rig, output: Path | None, cures: Sequence
             typer.echo(describe(trace) + (f"\n  nearest   {better}" if better else ""))
     if output is not None:
         write_traces(traces, output)
-
-
-def unsafe(trace: Trace) -> list[str]:
-    """Return one sentence per exceeded safety limit."""
-    from thermicon.circuit.safety.verdict import judge_safety
-
-    findings = judge_safety(trace).findings
-    return [f"{'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in findings]
+    return [verdict.safe for verdict in verdicts]
 
 
 def write_traces(traces: Sequence[Trace], output: Path) -> None:
@@ -246,7 +236,11 @@ def netlist_file(file: str, icon: str | None, asked: RigOptions, tail_s: float, 
     record = f"{output.stem}.txt" if output.suffix.lower() == NGSPICE else None
     check_separate([file], [output])
     icons = read_set([file])
-    played, rig = only(icons, icon, file), asked.load(icons, file)
+    played, *others = pick(icons, icon)
+    if others:
+        names = ", ".join([each.name for each in (played, *others[:19])] + ["…"] * (len(others) > 19))
+        raise usage(f"{file} has {len(others) + 1} icons; name one of {names}", "--icon")
+    rig = asked.load(icons, file)
     trace = simulate(played, rig, tail_s=tail_s)
     plan = design(played, rig, float(trace.time_s[-1]))
     title = f"{played.name} of {Path(file).name}"
@@ -291,10 +285,7 @@ def session_file(
         write_text(session_text(session, icons, rig), output)
     elif output is not None:
         write_traces([session.trace], output)
-    if figure.figure is not None:
-        from ..figures.session_figure import session_figure
-
-        figure.write(session_figure(session))
+    figure.write(lambda: session_figure(session))
     show(session_report(session))
     note(CAUTION)
 

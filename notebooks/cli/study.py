@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from thermicon.icons.number_text import number
+from thermicon.icons.number_text import count_of, number
 
 from ..messages import REFUSED, note, progress_bar, warn_of_rig
 from ..report.gate_words import CAUTION
@@ -28,10 +28,7 @@ KEPT = "give another folder with -o, such as -o study-2"
 
 def study_command(
     file: Annotated[str, typer.Argument(metavar="STUDY.toml", help="A study file, or example for the shipped one.")],
-    folder: Annotated[
-        Path,
-        out("DIR", "Folder for the files of the study.", "-o", "--output"),
-    ],
+    folder: Annotated[Path, out("DIR", "Folder for the files of the study.", "-o", "--output")],
 ) -> None:
     """Prepare an experiment: orders, pauses, judged drives, a PsychoPy script, and tables of events.
 
@@ -88,7 +85,8 @@ def report_lines(plan: Plan) -> list[str]:
     study, judged, landing = plan.materials.study, plan.judged, plan.landing
     gap, labels = judged.gap, labels_of(study)
     plays = plays_of(study, len(plan.materials.chosen))
-    people = "1 participant" if len(labels) == 1 else f"{len(labels)} participants"
+    people = count_of(len(labels), "participant")
+    (before, after), left = gap.carried_by, number(gap.carry_over_d_prime, 2)
     kind = f"{study.trials.order} order" if study.trials else "QUEST+"
     minutes = number(planned_s(plan) / 60.0)
     cautions = list(judged.cautions)
@@ -99,13 +97,8 @@ def report_lines(plan: Plan) -> list[str]:
         f"  trials    {people}, {plays} plays each, {kind}, seed {plan.materials.seed}",
         f"  time      {minutes} min each, landing and breaks included, if answers come within the gap",
         f"  gap       {number(gap.gap_s)} s: {gap.reason}",
-    ]
-    if gap.carried_by is not None:
-        before, after = gap.carried_by
-        left = number(gap.carry_over_d_prime, 2)
-        lines.append(f"            the icon before still changes it by d′ = {left} at most ({after} after {before})")
-    lines += _gap_rows(plan)
-    lines += [
+        f"            the icon before still changes it by d′ = {left} at most ({after} after {before})",
+        *_gap_rows(plan),
         f"  landing   {number(landing.landing_s)} s{'' if landing.derived else ', given'}: skin that arrives "
         f"{number(landing.from_K)} K off is then {number(landing.left_K, 2)} K off "
         f"({number(landing.left_at_10_s_K, 2)} K after 10 s)",

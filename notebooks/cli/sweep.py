@@ -182,7 +182,7 @@ def _receptors(trace: Trace) -> dict[str, float | None]:
     from thermicon.perception.observer.observer import CHANNELS
     from thermicon.perception.sensation.features import attack_K_per_s, delay_s, peak_change_K
 
-    seen = [(what(trace, channel)) for channel in CHANNELS for what in (peak_change_K, attack_K_per_s, delay_s)]
+    seen = [what(trace, channel) for channel in CHANNELS for what in (peak_change_K, attack_K_per_s, delay_s)]
     return dict(zip(RECEPTORS, seen, strict=True))
 
 
@@ -233,6 +233,8 @@ def sweep_command(
     icons = pick(whole := read_set([file]), icon)
     where = rig.load(whole, file)
     measured = Measured(whole, what, people, intervals or 0, seed) if what else None
+    from ..figures.sweep_figure import sweep_figure
+
     with progress_bar("sweep") as progress:
         frame = sweep(icons, where, key, values, tail_s=tail, measured=measured, progress=progress)
     if frame["duration_s"].isna().all():
@@ -240,10 +242,7 @@ def sweep_command(
         fail(f"--vary {key}: none of the {len(values)} values can be played; the first: {reason}")
     for line in sweep_lines(frame, [each.name for each in icons], key):
         note(line)
-    if figure.figure is not None:
-        from ..figures.sweep_figure import sweep_figure
-
-        figure.write(sweep_figure(frame, figure.look))
+    figure.write(lambda: sweep_figure(frame, figure.look))
     if output is not None:
         write_frame(frame, output)
     elif what:

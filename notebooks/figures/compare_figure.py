@@ -33,15 +33,11 @@ def compare_figure(pairs: Sequence[tuple[str, Aligned]], across: int = 3) -> Fig
     down = -(-len(panels) // across)
     figure = new_figure(0.8 + 3.3 * across, 0.7 + 3.6 * down)
     grid = figure.subplots(2 * down, across, squeeze=False, height_ratios=[2.0, 1.0] * down)
-    for place in range(down * across):
-        row, column = divmod(place, across)
-        above, below = grid[2 * row, column], grid[2 * row + 1, column]
-        if place >= len(panels):
-            above.remove()
-            below.remove()
-            continue
-        title, both, name = panels[place]
+    places = grid.reshape(down, 2, across).swapaxes(1, 2).reshape(-1, 2)
+    for (above, below), (title, both, name) in zip(places, panels, strict=False):
         _pair(above, below, both, name, title if len(pairs) > 1 else "")
+    for ax in places[len(panels) :].flat:
+        ax.remove()
     _, first = pairs[0]
     handles = [
         Line2D([], [], color=BROAD, lw=4.0, label=f"A  {first.name_a}"),

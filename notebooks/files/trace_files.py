@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy
 
+from thermicon.circuit.arrays import Array
 from thermicon.circuit.inputs import read_bytes, table_fault
 from thermicon.circuit.solver.trace import COLUMNS
 from thermicon.icons.files.measured_table import measured, missing
@@ -22,11 +23,8 @@ from ..messages import usage
 
 if TYPE_CHECKING:
     import pandas as pd
-    from numpy.typing import NDArray
 
     from thermicon.circuit import Trace
-
-    Array = NDArray[numpy.float64]
 
 MOST_MB = 200.0
 MOST_ROWS = 10_000_000
@@ -181,10 +179,9 @@ def unit_of_difference(column: str) -> str:
 
 def quantity(column: str) -> str:
     """Name of a column as people say it."""
-    bare = column.removesuffix("_W_per_m2")
-    if bare.startswith("heat_flow_"):
-        return f"heat flow, {bare.removeprefix('heat_flow_').replace('_', ' ')}"
-    return bare.rpartition("_")[0].replace("_", " ") if bare == column else bare.replace("_", " ")
+    if column.endswith("_W_per_m2"):
+        return f"heat flow, {column.removeprefix('heat_flow_').removesuffix('_W_per_m2').replace('_', ' ')}"
+    return column.rpartition("_")[0].replace("_", " ")
 
 
 def with_unit(value: float, unit: str) -> str:

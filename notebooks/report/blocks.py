@@ -15,8 +15,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-TEMPLATES = "templates"
-
 
 @dataclass(frozen=True, slots=True)
 class Heading:
@@ -128,7 +126,7 @@ def environment() -> Environment:
     def printed(value: Any) -> Any:
         return visible(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
-    folder = resources.files("thermicon.notebooks") / TEMPLATES
+    folder = resources.files("thermicon.notebooks") / "templates"
     return Environment(
         loader=FileSystemLoader(str(folder)),
         autoescape=True,

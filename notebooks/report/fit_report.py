@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from thermicon.icons.number_text import signed
+
 from .blocks import Block, Grid, Text, grid
 
 if TYPE_CHECKING:
@@ -65,7 +67,7 @@ def residual_table(fitted: RigFit) -> Grid:
     for each in fitted.channels:
         words = each.column.rpartition("_")[0].replace("_", " ")
         sizes = [milli(value, each.unit) for value in (each.rms, each.largest)]
-        offset = f"{_signed(each.offset_K, 3)} K" if each.unit == "K" else "–"
+        offset = f"{signed(each.offset_K, '.3f')} K" if each.unit == "K" else "–"
         rows.append((f"{words} ({each.file})", *sizes, f"{each.largest_s:.1f} s", offset))
     numbers = ("rms", "largest", "at", "offset")
     return grid(("measured − fitted", *numbers), rows, numbers)
@@ -76,7 +78,7 @@ def doubts(fitted: RigFit) -> list[str]:
     lines = [f"not identified: {item.key}; {item.cure}" for item in fitted.unidentified]
     keys = [item.key for item in fitted.parameters]
     pairs = [
-        f"{keys[a]} and {keys[b]} ({_signed(float(fitted.correlation[a, b]), 2)})"
+        f"{keys[a]} and {keys[b]} ({signed(float(fitted.correlation[a, b]), '.2f')})"
         for a in range(len(keys))
         for b in range(a + 1, len(keys))
         if abs(fitted.correlation[a, b]) > CLOSE
@@ -105,7 +107,7 @@ def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:
 
 
 def _short(value: float, digits: int) -> str:
-    return f"{value:#.{digits}g}".replace("-", "−").removesuffix(".")
+    return signed(value, f"#.{digits}g").removesuffix(".")
 
 
 def _digits(value: float, half: float) -> int:
@@ -114,7 +116,3 @@ def _digits(value: float, half: float) -> int:
         return USUAL_DIGITS
     places = math.floor(math.log10(abs(value))) - math.floor(math.log10(half)) + 1
     return min(max(places, USUAL_DIGITS), MOST_DIGITS)
-
-
-def _signed(value: float, digits: int) -> str:
-    return f"{value:.{digits}f}".replace("-", "−")

@@ -75,8 +75,10 @@ def after_choice(found: SetReport, command: Command, written: str | None) -> str
 
 def _after_edits(found: SetReport, command: Command) -> str:
     """To make the edits, or fewer icons where no edit helps."""
+    from thermicon.perception.selection.edit import Edit
+
     count = len(found.ranking.icons)
-    if _edited(found):
+    if any(isinstance(each, Edit) for each in found.edits.values()):
         return f"change the lines above, then {command('rank')}"
     if not _close(found):
         return command("export", *PLAYED)
@@ -104,12 +106,6 @@ def _close(found: SetReport) -> bool:
     from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
 
     return any(pair.d_prime < DISTINGUISHABLE_DPRIME for pair in found.ranking.pairs)
-
-
-def _edited(found: SetReport) -> bool:
-    from thermicon.perception.selection.edit import Edit
-
-    return any(isinstance(each, Edit) for each in found.edits.values())
 
 
 def _wider(found: SetReport, command: Command) -> str:

@@ -62,7 +62,7 @@ def repeated_text(gates: Sequence[Named]) -> str:
     shortest = "no pause is safe" if first.shortest_pause_s is None else f"{number(first.shortest_pause_s, 1)} s"
     if first.faultless_pause_s is not None and first.faultless_pause_s != first.shortest_pause_s:
         shortest += f" ({number(first.faultless_pause_s, 1)} s without faults)"
-    ordered = sorted(gates, key=lambda one: _recovery(one[1].repeated))
+    ordered = sorted(gates, key=lambda one: (one[1].repeated.recovery_s is None, one[1].repeated.recovery_s or 0.0))
     back = [_recovery_text(gate.repeated) for _, gate in (ordered[0], ordered[-1])]
     after = back[0]
     if back[0] != back[1]:
@@ -163,10 +163,6 @@ def steps_of(delivery: DeliveredDrive) -> tuple[str, str]:
     if isinstance(played, Setpoints):
         return "in", f"{len(played.segments)} segments"
     return "at", f"{number(delivery.rate_Hz, 1)} Hz"
-
-
-def _recovery(repeated: Repeated) -> float:
-    return float("inf") if repeated.recovery_s is None else repeated.recovery_s
 
 
 def _recovery_text(repeated: Repeated) -> str:

@@ -53,6 +53,7 @@ def design_lines(found: ExperimentPlan) -> list[str]:
     if found.difference is None:
         wanted = f"an interval of {number(100 * found.wanted)} points or less"
         lines = [f"Mean width of the 95 % interval of the per cent correct, in points; * marks {wanted}."]
+        cure, each_set = " participants or trials; try larger --participants.", ""
     else:
         wanted = f"{percent(found.wanted)} of experiments distinguish the sets"
         wrong = max(each.wrong or 0.0 for each in found.designs)
@@ -61,19 +62,8 @@ def design_lines(found: ExperimentPlan) -> list[str]:
             f"participant names both); * marks {percent(found.wanted)} or more. At most {percent(wrong)} find the "
             "wrong direction."
         ]
+        hardly = "where the sets hardly differ in many laboratories that the evidence allows"
+        cure, each_set = f", or cannot be had {hardly}: pilot first.", " of each set"
     if best is None:
-        lines.append(
-            f"None of these sizes is enough: {wanted} needs more"
-            + (
-                ", or cannot be had where the sets hardly differ in many laboratories that the evidence allows: pilot "
-                "first."
-                if found.difference is not None
-                else " participants or trials; try larger --participants."
-            )
-        )
-    else:
-        lines.append(
-            f"Fewest trials: {best.participants} participants with {best.trials} trials each"
-            f"{' of each set' if found.difference is not None else ''}."
-        )
-    return lines
+        return [*lines, f"None of these sizes is enough: {wanted} needs more{cure}"]
+    return [*lines, f"Fewest trials: {best.participants} participants with {best.trials} trials each{each_set}."]

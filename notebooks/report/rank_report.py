@@ -10,15 +10,7 @@ from thermicon.icons.number_text import count_of, number, percent, percent_span,
 
 from .blocks import Block, Bullets, Cell, Facts, Grid, Heading, Text, grid, printed_unit
 from .choices import choice_lines, goal_lines, laboratory
-from .rank_details import (
-    caveat,
-    crowd_text,
-    detail_blocks,
-    edit_text,
-    edits_blocks,
-    outside_lines,
-    trouble_lines,
-)
+from .rank_details import caveat, crowd_text, detail_blocks, edit_text, edits_blocks, outside_lines, trouble_lines
 
 if TYPE_CHECKING:
     from thermicon.perception import Ranking

@@ -193,12 +193,8 @@ def _cell(row: Mapping[Any, Any], quantity: str) -> str:
     value, *interval = (float(row.get(name, math.nan)) * factor for name in MEASURES[quantity])
     if math.isnan(value):
         return "–"
-    said = f"{value:{digits}}{unit}"
-    return (
-        said
-        if not interval or any(map(math.isnan, interval))
-        else f"{said} ({interval[0]:{digits}}–{interval[1]:{digits}})"
-    )
+    known = interval and not any(map(math.isnan, interval))
+    return f"{value:{digits}}{unit}" + (f" ({interval[0]:{digits}}–{interval[1]:{digits}})" if known else "")
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,10 +58,9 @@ def validate_report(report: ValidationReport) -> list[Block]:
 def _line(line: ReportRow) -> Sequence[str]:
     """A row of a target: name with its unit, what was published, and each prediction with its verdict."""
     cells = [f"{_predicted(line, one)} {MARK[one.verdict.word]}{_share(one)}" for one in line.judged]
-    unit = "" if line.row.unit == line.published.unit else unit_text(line.row.unit)
+    unit = "" if line.row.unit in (line.published.unit, "", "1", "proportion") else f", {line.row.unit}"
     skin = "–" if line.baseline is None else plain(line.baseline)
-    name = f"{line.row.label}{',' if unit else ''}{unit}"
-    return name, line.published.text, *cells, skin, line.nearer_to_published
+    return line.row.label + unit, line.published.text, *cells, skin, line.nearer_to_published
 
 
 def _predicted(line: ReportRow, one: JudgedRow) -> str:
@@ -73,11 +72,6 @@ def _predicted(line: ReportRow, one: JudgedRow) -> str:
 def _share(one: JudgedRow) -> str:
     """Share of the draws in which a row on a knife edge holds."""
     return f" {100 * one.held:.0f} %" if one.held is not None and one.knife_edge else ""
-
-
-def unit_text(unit: str) -> str:
-    """Format the unit that follows a number; empty for pure numbers and proportions."""
-    return "" if unit in ("", "1", "proportion") else f" {unit}"
 
 
 def summary_text() -> str:

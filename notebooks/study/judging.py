@@ -116,8 +116,8 @@ def judge_sessions(
     tracking, known = "display" if held else "replay", {icon.name: icon for icon in icons}
     extremes: dict[str, tuple[float, ...]] = {}
     for course in courses:
-        whole = _nominal(course.order, icons, rig, gap_s, tracking)
-        parts = [_nominal(order, icons, rig, gap_s, tracking) for order in course.sittings] if course.breaks else []
+        whole = _nominal(course.order, known, rig, gap_s, tracking)
+        parts = [_nominal(order, known, rig, gap_s, tracking) for order in course.sittings] if course.breaks else []
         extremes[course.label] = _farthest(whole, parts)
     chosen = [course for course in courses if course.label in _extreme(extremes)]
     sessions: dict[str, Session] = {}
@@ -155,10 +155,9 @@ def _farthest(
 
 
 def _nominal(
-    order: tuple[str, ...], icons: Sequence[Icon], rig: Rig, gap_s: float, tracking: str
+    order: tuple[str, ...], known: Mapping[str, Icon], rig: Rig, gap_s: float, tracking: str
 ) -> tuple[float, float, float, float]:
     """Coldest and warmest skin in °C, dose in min CEM43 and largest drift in K of an order on the rig as given."""
-    known = {icon.name: icon for icon in icons}
     played = drive_of(SessionPlan(order, gap_s), known, rig, tracking)
     trace = simulate_current(played.drive, rig, rate_Hz=played.rate_Hz, start_C=played.start_C)
     before = trace.skin_C[np.rint(np.array(played.starts_s) * played.rate_Hz).astype(np.int64)] - trace.skin_C[0]

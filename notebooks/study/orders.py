@@ -26,13 +26,7 @@ def williams_rows(count: int) -> tuple[Block, ...]:
     >>> williams_rows(4)
     ((0, 3, 1, 2), (1, 0, 2, 3), (2, 1, 3, 0), (3, 2, 0, 1))
     """
-    first, low, high = [0], 1, count - 1
-    while len(first) < count:
-        first.append(high)
-        high -= 1
-        if len(first) < count:
-            first.append(low)
-            low += 1
+    first = [(-1) ** k * ((k + 1) // 2) % count for k in range(count)]  # 0, the last, 1, the last but one, …
     rows = [tuple((place + shift) % count for place in first) for shift in range(count)]
     return tuple(rows if count % 2 == 0 else rows + [row[::-1] for row in rows])
 
@@ -88,21 +82,18 @@ def _drawn(rng: Random, icons: int, repetitions: int, blocks: int, *, balanced: 
     """An order without immediate repeats; balanced: the next icon has followed the last one least often so far."""
     for _ in range(MOST_TRIES):
         order: list[int] = []
-        followed = Counter[tuple[int, int]]()
-        for _ in range(blocks):
-            left = Counter(dict.fromkeys(range(icons), repetitions))
-            for _ in range(icons * repetitions):
-                place = _next(rng, order, left, followed if balanced else None)
-                if place is None:
-                    break
-                if order:
-                    followed[order[-1], place] += 1
-                order.append(place)
-                left[place] -= 1
-            else:
-                continue
-            break
-        if len(order) == icons * repetitions * blocks:
+        left, followed = Counter[int](), Counter[tuple[int, int]]()
+        for _ in range(blocks * icons * repetitions):
+            if not left.total():  # a block begins
+                left.update(dict.fromkeys(range(icons), repetitions))
+            place = _next(rng, order, left, followed if balanced else None)
+            if place is None:
+                break
+            if order:
+                followed[order[-1], place] += 1
+            order.append(place)
+            left[place] -= 1
+        else:
             return order
     raise ArithmeticError("no order without immediate repeats was found")  # two icons or more always have one
 

@@ -5,6 +5,7 @@ Limits on their number are checked before anything is simulated.
 
 import csv
 import io
+import itertools
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -93,12 +94,10 @@ def courses_of(study: Study, icons: tuple[str, ...], seed: int) -> tuple[Schedul
     courses = []
     for who, label in enumerate(labels):
         blocks = [*(first[who] if first else ((),)), *main[who]]
-        rows: list[Trial] = []
-        for block, places in enumerate(blocks):
-            for place in places:
-                number = sum(row.block > 0 for row in rows) + 1 if block else 0
-                rows.append(Trial(block, number, icons[place]))
-        courses.append(Schedule(label, tuple(rows)))
+        kept = itertools.count(1)
+        played = [(block, place) for block, places in enumerate(blocks) for place in places]
+        rows = tuple(Trial(block, next(kept) if block else 0, icons[place]) for block, place in played)
+        courses.append(Schedule(label, rows))
     return tuple(courses)
 
 

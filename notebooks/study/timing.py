@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thermicon.circuit import Drive, Rig, design, simulate_current
+from thermicon.circuit.arrays import Array
 from thermicon.circuit.solver.inverse import baseline_C
 from thermicon.circuit.solver.modes import FELT, modes_of
 from thermicon.circuit.solver.network import SKIN
@@ -39,7 +39,7 @@ class Gap:
     gap_s: float
     reason: str
     carry_over_d_prime: float
-    carried_by: tuple[str, str] | None
+    carried_by: tuple[str, str]
     tried: tuple[tuple[float, float], ...] = ()
 
 
@@ -132,7 +132,7 @@ def find_landing(icon: Icon, rig: Rig, timing: Timing, held: bool) -> Landing:
     return Landing(seconds, timing.landing_s is None, timing.landing_from_K, left, early)
 
 
-def settling(icon: Icon, rig: Rig, from_K: float, held: bool) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def settling(icon: Icon, rig: Rig, from_K: float, held: bool) -> tuple[Array, Array]:
     """Seconds after contact, and the largest deviation of skin and receptors in K from where they settle.
 
     Skin arrives `from_K` warmer or colder than it rests; the display stays at baseline (`held`), or the current does.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from typing import Any
@@ -11,8 +10,9 @@ from typing import Any
 from thermicon.icons import CueErrors, Icon
 from thermicon.icons.model.motion import periods_of
 from thermicon.icons.model.parameter import Path
-from thermicon.icons.model.statements import Leaf, Wave
+from thermicon.icons.model.statements import Wave
 from thermicon.icons.number_text import number
+from thermicon.perception.selection.candidate_edits import with_values
 
 from ..editing.cue_check import read_text
 from ..editing.number_literals import Amount, WrittenStatement, keyword_of, kind_of, replaced, written
@@ -129,8 +129,7 @@ class _Move:
         """The place of the corner with a statement of another size and time."""
         self.check(size, took)
         try:
-            leaf = replace(self.corner.leaf, **self.fields(size, took))
-            body = _with(self.icon.statements, self.path, leaf)
+            body = with_values(self.icon.statements, self.path, self.fields(size, took))
             found = corners_of(replace(self.icon, statements=body), self.start)
         except CueErrors as wrong:
             first = wrong.errors[0]
@@ -245,11 +244,3 @@ class _Move:
         if value <= 0:
             begin = number(float(self.corner.begin_s), 2)
             raise _Refused(f"the corner cannot come before {begin} s, where its statement begins")
-
-
-def _with(body: Sequence[Any], path: Path, leaf: Leaf) -> tuple[Any, ...]:
-    """A body with the statement at a path exchanged."""
-    place, rest = path[0], path[1:]
-    part = body[place]
-    new = replace(part, body=_with(part.body, rest, leaf)) if rest else leaf
-    return (*body[:place], new, *body[place + 1 :])

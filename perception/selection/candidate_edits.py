@@ -6,7 +6,7 @@ An edit changes one of the numbers that stand in an icon's statements, or repeat
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -68,7 +68,7 @@ def numbers_of(icon: Icon, baseline_C: float) -> tuple[Number, ...]:
 def with_number(icon: Icon, number: Number, value: float) -> Icon:
     """The icon with one number changed; raises what an icon raises that cannot be run so."""
     new = int(value) if number.field == "count" else value
-    return replace(icon, statements=_with_values(icon.statements, number.path, {number.field: new}))
+    return replace(icon, statements=with_values(icon.statements, number.path, {number.field: new}))
 
 
 def repeated(icon: Icon, count: int) -> Icon:
@@ -104,10 +104,11 @@ def _numbers(body: Sequence[Any], before: tuple[int, ...], baseline_C: float) ->
             yield from _numbers(part.body, path, baseline_C)
 
 
-def _with_values(body: Sequence[Any], path: Sequence[int], values: dict[str, float]) -> tuple[Any, ...]:
+def with_values(body: Sequence[Any], path: Sequence[int], values: Mapping[str, Any]) -> tuple[Any, ...]:
+    """A body in which fields of the statement at a path have other values."""
     place, rest = path[0], path[1:]
     part = body[place]
-    new = replace(part, body=_with_values(part.body, rest, values)) if rest else replace(part, **values)
+    new = replace(part, body=with_values(part.body, rest, values)) if rest else replace(part, **values)
     return (*body[:place], new, *body[place + 1 :])
 
 

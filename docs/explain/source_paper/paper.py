@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -33,7 +32,6 @@ THERMISTORS = (("1", "display"), ("2", "interface"))
 """The third is under a pad."""
 
 
-@cache
 def printed() -> RecordTable:
     """Numbers from the paper's text, each with its place."""
     return load_records(Path(__file__).with_name("source-paper.toml"))
