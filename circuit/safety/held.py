@@ -8,7 +8,6 @@ display that is held depends on contact, room and deep tissue alone, and is line
 from __future__ import annotations
 
 import math
-from functools import lru_cache
 
 import numpy as np
 
@@ -37,7 +36,6 @@ STAYS = (
 )
 
 
-@lru_cache(maxsize=64)
 def held_C(rig: Rig, limits: Limits) -> Span:
     """Between which temperatures in °C a display may stay without limit of time, in all corners of contact and room."""
     low, high = -math.inf, math.inf
