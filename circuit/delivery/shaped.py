@@ -7,7 +7,6 @@ The loop depends on the rig alone: its own, or one that suits its module. All ic
 
 import math
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 
@@ -39,7 +38,6 @@ LEAD_K = 4.0
 """How far set-points may lead a cue: a calm loop then sends all of a usual driver's current; a weaker one misses."""
 
 
-@lru_cache(maxsize=64)
 def looped(rig: Rig) -> Rig:
     """The rig with the loop that plays its set-points: its own, or the strongest that is calm in every corner."""
     if rig.controller is not None:
