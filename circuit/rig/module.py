@@ -11,7 +11,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from .faults import PARAMETERS, Amperes, Celsius, KeyTable, Volts, sentence
+from .faults import Amperes, Celsius, KeyTable, Volts, sentence
 
 ZERO_C_IN_K = 273.15
 """0 °C in kelvin; the only place where this number stands."""
@@ -106,9 +106,13 @@ class Datasheet(KeyTable):
         return Extraction(seebeck, ohm, theta, self.mean_C)
 
 
-def at_mean_C(extractions: Sequence[Extraction], mean_C: float) -> tuple[float, ...]:
+def at_mean_C(extractions: Sequence[Extraction], mean_C: float) -> tuple[float, float, float]:
     """α V/K, R Ω and Θ K/W at a mean temperature, linear between two extractions, the nearer one outside."""
     first, last = min(extractions, key=lambda one: one.mean_C), max(extractions, key=lambda one: one.mean_C)
     span = last.mean_C - first.mean_C
     share = min(max((mean_C - first.mean_C) / span, 0.0), 1.0) if span > 0 else 0.0
-    return tuple((1 - share) * getattr(first, key) + share * getattr(last, key) for key in PARAMETERS)
+    return (
+        (1 - share) * first.seebeck_V_per_K + share * last.seebeck_V_per_K,
+        (1 - share) * first.resistance_ohm + share * last.resistance_ohm,
+        (1 - share) * first.thermal_resistance_K_per_W + share * last.thermal_resistance_K_per_W,
+    )
