@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import textwrap
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import signed
@@ -91,6 +92,7 @@ USUAL = {
 large modules, from the thinnest facial skin to a heel, and within the dermis; all are choices of this project."""
 
 
+@lru_cache(maxsize=512)
 def rig_warnings(rig: Rig) -> tuple[Unusual, ...]:
     """Return everything unusual: heat loss, blood, loosened limits, origin of the module's numbers."""
     pump = () if rig.pump is None else (*_driver(rig), *rig.pump.origin.warnings, *_module(rig))
