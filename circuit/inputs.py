@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable, Sequence
+from functools import cache
+from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +15,7 @@ from thermicon.icons.files.table import Fault
 from thermicon.icons.installing import install
 from thermicon.icons.model.arguments import InputError as InputError
 from thermicon.icons.model.clean_text import clean_line, first_control
+from thermicon.icons.near_words import did_you_mean
 
 if TYPE_CHECKING:
     from pydantic import ValidationError
@@ -81,6 +85,38 @@ def read_text(path: Path, what: str, limit_MB: float, error: type[Exception] = I
         raise error(f"{path}: not UTF-8 text (byte {problem.start}); save the {what} as UTF-8") from None
 
 
+def named_text(source: str | Path, names: Sequence[str], what: str, error: type[Exception]) -> tuple[str, str]:
+    """The text of a file of a kind `what` ("rig"), by its path or a shipped name of `names`, and what to call the file.
+
+    A file with the name of a shipped one is read in its place; a folder of that name is not.
+    """
+    path = Path(source)
+    named = path.suffix == ".toml" and path.stem not in names
+    if named or (path.exists() and not (path.is_dir() and str(source) in names)):
+        return read_text(path, f"{what} file", 1, error), str(path)
+    if str(source) not in names:
+        hint = did_you_mean(path.stem, names, beside="" if path.stem in names else beside(path, ".toml"))
+        raise error(f"{source}: no such {what}; {hint}")
+    return shipped_text(f"{what}s/{source}.toml"), f"{what} {source}"
+
+
+def shipped_names(folder: str) -> list[str]:
+    """Names of the files in a folder of `circuit`, in alphabetical order."""
+    files = (resources.files("thermicon.circuit") / folder).iterdir()
+    return sorted(path.name.removesuffix(".toml") for path in files if path.name.endswith(".toml"))
+
+
+def shipped_text(path: str) -> str:
+    """The text of a file of `circuit`, by its path there."""
+    return resources.files("thermicon.circuit").joinpath(path).read_text("utf-8")
+
+
+@cache
+def shipped_table(name: str) -> dict[str, Any]:
+    """A table of `circuit/data` that holds other things than records."""
+    return tomllib.loads(shipped_text(f"data/{name}"))
+
+
 def read_bytes(path: Path, what: str, limit_MB: float, error: type[Exception] = InputError) -> bytes:
     """Return the content of a regular file of at most `limit_MB`, or raise `error` with a sentence on what it is."""
     try:
@@ -126,8 +162,6 @@ def read_toml(
 
     That is also for another kind of file, without a key of its `own`, deep nesting, and numbers beyond 64 bits.
     """
-    import tomllib
-
     try:
         document = tomllib.loads(text)
     except tomllib.TOMLDecodeError as problem:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 CACHES = {"cache", "lru_cache", "cached_property"}
-LEAST_PER_CENT = 1.5
+LEAST_PER_CENT = 0.8
 """Of a command or an evaluation: what saves less is not worth what it hides."""
 
 

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from thermicon.icons.files.shipped import beside
 from thermicon.icons.model.arguments import checked
-from thermicon.icons.near_words import did_you_mean
 
-from ..inputs import read_text
+from ..inputs import named_text, shipped_names
 from ..records import Record
 from .devicefile import DeviceError, DrivenBy, read_device_table
 
@@ -89,14 +86,7 @@ class Device:
 
         A file with the name of a shipped device is read in its place; a folder of that name is not.
         """
-        path, names = Path(source), device_names()
-        named = path.suffix == ".toml" and path.stem not in names
-        if named or (path.exists() and not (path.is_dir() and str(source) in names)):
-            return _build(read_text(path, "device file", 1, DeviceError), str(path))
-        if str(source) not in names:
-            hint = did_you_mean(path.stem, names, beside="" if path.stem in names else beside(path, ".toml"))
-            raise DeviceError(f"{source}: no such device; {hint}")
-        return _shipped(str(source))
+        return _build(*named_text(source, device_names(), "device", DeviceError))
 
     def record(self, quantity: str) -> Record | None:
         """Record of a quantity, as in `update rate`; None where the device does not state it."""
@@ -143,15 +133,7 @@ class Device:
 
 def device_names() -> tuple[str, ...]:
     """Return the names of the shipped devices."""
-    return tuple(sorted(path.name.removesuffix(".toml") for path in _folder().iterdir() if path.name.endswith(".toml")))
-
-
-def _folder() -> Any:
-    return resources.files("thermicon.circuit") / "devices"
-
-
-def _shipped(name: str) -> Device:
-    return _build((_folder() / f"{name}.toml").read_text("utf-8"), f"device {name}")
+    return tuple(shipped_names("devices"))
 
 
 def _build(text: str, where: str) -> Device:

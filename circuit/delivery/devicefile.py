@@ -1,9 +1,6 @@
 """The schema of a device file."""
 
-import tomllib
 from collections.abc import Iterable, Iterator
-from functools import cache
-from importlib import resources
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError
@@ -11,7 +8,7 @@ from pydantic import Field, ValidationError
 from thermicon.icons.near_words import did_you_mean
 from thermicon.icons.number_text import signed
 
-from ..inputs import LONGEST_NAME, InputError, Place, key_faults, read_toml
+from ..inputs import LONGEST_NAME, InputError, Place, key_faults, read_toml, shipped_table
 from ..records import Record, RecordError
 from ..rig.faults import KeyTable, Paragraph, Text
 
@@ -23,11 +20,9 @@ class DeviceError(InputError):
 DrivenBy = Literal["volts", "amperes", "duty", "set-points", "temperatures"]
 
 
-@cache
 def quantities() -> tuple[dict[str, dict[str, Any]], dict[str, list[str]]]:
     """Quantities that a device may state, with units and limits; and those that it must, by what drives it."""
-    text = (resources.files("thermicon.circuit") / "data" / "device-quantities.toml").read_text("utf-8")
-    table = tomllib.loads(text)
+    table = shipped_table("device-quantities.toml")
     return table["quantities"], table["needed"]
 
 

@@ -76,14 +76,13 @@ def nearest_reachable(icon: Icon, rig: AnyRig = None) -> Nearest | None:
     if icon.context.control == "current" or _reached(icon, on):
         return None
     base = baseline_C(icon, on)
-    slower = _least(lambda by: _reached(changed(icon, base, slower=by), on), FARTHEST)
-    smaller = _least(lambda by: _reached(changed(icon, base, smaller=1.0 / by), on), FARTHEST)
-    if slower is None and smaller is None:
-        return None
-    if smaller is None or (slower is not None and slower <= smaller):
-        assert slower is not None
+    slower = _least(lambda by: _reached(changed(icon, base, slower=by), on))
+    smaller = _least(lambda by: _reached(changed(icon, base, smaller=1.0 / by), on))
+    if slower is not None and (smaller is None or slower <= smaller):
         found = changed(icon, base, slower=slower)
         return Nearest(found, slower, 1.0, _lines(icon, found))
+    if smaller is None:
+        return None
     least = _three_digits(1.0 / smaller, math.floor)  # never rounded towards what is not reached
     found = changed(icon, base, smaller=least)
     return Nearest(found, 1.0, least, _lines(icon, found))
@@ -134,11 +133,11 @@ def _reached(icon: Icon, rig: Rig) -> bool:
         return False
 
 
-def _least(works: Callable[[float], bool], most: float) -> float | None:
-    """Least factor above 1 that works, with three digits; None where even `most` does not work."""
-    if not works(most):
+def _least(works: Callable[[float], bool]) -> float | None:
+    """Least factor above 1 that works, with three digits; None where even the farthest does not work."""
+    if not works(FARTHEST):
         return None
-    low, high = 0.0, math.log(most)
+    low, high = 0.0, math.log(FARTHEST)
     for _ in range(STEPS):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if works(math.exp(middle)) else (middle, high)

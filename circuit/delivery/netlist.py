@@ -7,13 +7,12 @@ import re
 import string
 import textwrap
 from collections.abc import Iterator
-from importlib import resources
 
 import numpy as np
 
 from thermicon.icons.model.arguments import checked
 
-from ..inputs import InputError
+from ..inputs import InputError, shipped_text
 from ..program import own_version
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import AnyRig, Rig
@@ -118,8 +117,7 @@ def _header(rig: Rig, names: list[str], title: str) -> Iterator[str]:
     if rig.probes:
         left_out = ", ".join(probe.name for probe in rig.probes)
         rest = f"Not in this file: the rig's own probes with their lags ({left_out}).\n{rest}"
-    template = (resources.files("thermicon.circuit") / "data" / "netlist-header.txt").read_text("utf-8")
-    text = string.Template(template).substitute(
+    text = string.Template(shipped_text("data/netlist-header.txt")).substitute(
         gain=repr(driver.transconductance_A_per_V),
         compliance=repr(driver.voltage_limit_V),
         inside=f"{names[2] if names[2] != 'skin' else names[3]} ... {names[-2]}",

@@ -15,7 +15,6 @@ from .device import Device
 from .formats import Format, FormatError
 from .formats.form import Played, events_in, must_prevent
 from .prepare import Prepared, Refusal
-from .samples import Samples
 from .setpoints import Setpoints, lag_of
 
 
@@ -155,7 +154,7 @@ def sidecar(
             place.place: {"largest_K": place.largest_K, "at_s": place.at_s, "rms_K": place.rms_K}
             for place in cue.deviation.places
         },
-        "open_loop_spread": None if cue.spread is None else cue.spread.to_dict(),
+        "open_loop_spread": None if cue.spread is None else asdict(cue.spread),
         "perception": None if felt is None else dict(felt),
         "stated_losses": [_record(record) for record in loss_table()],
         "safety": cue.verdict.to_dict(),
@@ -197,32 +196,27 @@ def _played_facts(delivery: DeliveredDrive) -> dict[str, object]:
                 "counted as a miss or a loss"
             ),
         }
-    return _samples(played, delivery.lead_s)
+    scale = played.scale
+    unit = {"1": "duty", "°C": "C"}.get(scale.unit, scale.unit)
+    return {
+        "samples": len(played.codes),
+        "icon_begins_at_s": delivery.lead_s,
+        "duration_s": delivery.file_s,
+        f"offset_{unit}": scale.offset,
+        f"step_{unit}": scale.step,
+        "lowest_code": scale.lowest,
+        "highest_code": scale.highest,
+        f"low_level_{unit}": scale.offset + scale.step * scale.lowest,
+        f"high_level_{unit}": scale.offset + scale.step * scale.highest,
+        f"rest_{unit}": float(played.command[0]),
+        f"least_command_{unit}": float(played.command.min()),
+        f"greatest_command_{unit}": float(played.command.max()),
+    }
 
 
 def _predicted(delivery: DeliveredDrive) -> dict[str, object]:
     numbers = {**summarise(delivery.trace).to_dict(), "duration_s": delivery.file_s}
     return {key: value for key, value in numbers.items() if key not in OF_THE_TARGET}
-
-
-def _samples(samples: Samples, lead_s: float) -> dict[str, object]:
-    scale = samples.scale
-    unit = {"1": "duty", "°C": "C"}.get(scale.unit, scale.unit)
-    ends = (scale.offset + scale.step * scale.lowest, scale.offset + scale.step * scale.highest)
-    return {
-        "samples": len(samples.codes),
-        "icon_begins_at_s": lead_s,
-        "duration_s": float(samples.time_s[-1]),
-        f"offset_{unit}": scale.offset,
-        f"step_{unit}": scale.step,
-        "lowest_code": scale.lowest,
-        "highest_code": scale.highest,
-        f"low_level_{unit}": ends[0],
-        f"high_level_{unit}": ends[1],
-        f"rest_{unit}": float(samples.command[0]),
-        f"least_command_{unit}": float(samples.command.min()),
-        f"greatest_command_{unit}": float(samples.command.max()),
-    }
 
 
 def _device(device: Device) -> dict[str, object]:

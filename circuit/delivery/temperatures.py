@@ -49,7 +49,7 @@ def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float) ->
     end = duration_s(icon, rig) + tail_s
     rate = rate_of(device, requested, end)
     plan = design_ideal(icon, rig, end)
-    samples = _sampled(icon, rig, device, end, rate)
+    samples = _sampled(icon, rig, device, plan, end, rate)
     designed = designed_until(led(plan, end, rate), (len(samples.codes) - 1) / rate)
     model = simulate_current(designed, rig, start_C=plan.start_C)
     samples = shaped(rig, samples, model.time_s, model.display_C)
@@ -111,9 +111,9 @@ def designed_until(drive: Drive, end_s: float) -> Drive:
     return Drive(np.append(drive.time_s, end_s), np.append(drive.current_A, drive.current_A[-1]), drive.held)
 
 
-def _sampled(icon: Icon, rig: Rig, device: Device, end_s: float, rate_Hz: float) -> Samples:
+def _sampled(icon: Icon, rig: Rig, device: Device, plan: Design, end_s: float, rate_Hz: float) -> Samples:
     """Means of the designed display over each period, preceded by one period of rest and followed by rest."""
-    times, levels = _course(icon, rig, end_s)
+    times, levels = _course(icon, rig, plan)
     for level in (float(levels.min()), float(levels.max())):
         check_level("set-point", level, device.interval("set-point range"), device)
     edges: Array = np.arange(math.ceil(end_s * rate_Hz - 1e-9) + 1, dtype=np.float64) / rate_Hz
@@ -126,12 +126,11 @@ def _sampled(icon: Icon, rig: Rig, device: Device, end_s: float, rate_Hz: float)
     return Samples(rate_Hz, np.clip(codes, scale.lowest, scale.highest), scale)
 
 
-def _course(icon: Icon, rig: Rig, end_s: float) -> tuple[Array, Array]:
+def _course(icon: Icon, rig: Rig, plan: Design) -> tuple[Array, Array]:
     """Times in s and the display in °C of a design without any loop: the cue's corners, or what its skin needs."""
     if icon.context.control == "display":
         corners = icon.corners(baseline_C(icon, rig))
         return np.array(corners.time_s), np.array(corners.value)
-    plan: Design = design_ideal(icon, rig, end_s)
     model = simulate_current(plan.drive, rig, rate_Hz=rig.driver.update_Hz, start_C=plan.start_C)
     return model.time_s, model.display_C
 

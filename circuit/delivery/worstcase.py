@@ -54,10 +54,6 @@ class OpenLoopSpread:
     baseline_C: tuple[float, float]
     step_K: tuple[float, float]
 
-    def to_dict(self) -> dict[str, list[float]]:
-        """In the form of a sidecar."""
-        return {"baseline_C": list(self.baseline_C), "step_K": list(self.step_K)}
-
 
 def open_loop_spread(delivery: DeliveredDrive) -> OpenLoopSpread | None:
     """The spread of a drive over a rig's corners, but for those that diverge; None where a loop follows set-points."""

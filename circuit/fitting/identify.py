@@ -79,11 +79,6 @@ def half_width(log: bool, sd: float) -> float:
     return math.expm1(min(T95 * sd, 50.0)) if log else T95 * sd
 
 
-def is_identified(log: bool, sd: float, usual: float) -> bool:
-    """Whether an interval is narrower than what is assumed anyway."""
-    return half_width(log, sd) < usual
-
-
 def identified(
     problem: FitProblem, solution: Solution, start: Rig, *, late: bool = False
 ) -> tuple[tuple[FittedParameter, ...], Array]:
@@ -96,7 +91,7 @@ def identified(
     wanting = [
         k
         for k, key in enumerate(problem.keys)
-        if not is_identified(key.log, share[k] * float(deviation[k]), key.usual)
+        if not half_width(key.log, share[k] * float(deviation[k])) < key.usual
         or (key.log and half_width(True, float(deviation[k])) >= WHOLE)
         or _at_bound(problem, theta, k)
     ]
@@ -202,7 +197,8 @@ def cures(problem: FitProblem, theta: Array, wanting: Sequence[int], correlation
 
 def _cure(problem: FitProblem, place: int, gains: dict[str, Array], correlation: Array) -> str:
     key = problem.keys[place]
-    good = {name: sd[place] for name, sd in gains.items() if is_identified(key.log, float(sd[place]), key.usual)}
+    widths = {name: half_width(key.log, float(sd[place])) for name, sd in gains.items()}
+    good = {name: width for name, width in widths.items() if width < key.usual}
     with_what = [
         problem.keys[other].words
         for other in range(len(problem.keys))
@@ -211,6 +207,6 @@ def _cure(problem: FitProblem, place: int, gains: dict[str, Array], correlation:
     why = f"cannot be separated from {' and '.join(with_what)} here; " if with_what else ""
     if good:
         best = min(good, key=lambda name: good[name])
-        size = width_text(key.log, half_width(key.log, float(good[best])), unit_of(key.key))
+        size = width_text(key.log, good[best], unit_of(key.key))
         return f"{why}log {best} as well: it would then be known to about {size}"
     return f"{why}measure it directly: {key.direct}"

@@ -2,14 +2,12 @@
 
 import json
 import re
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib import resources
 
 from thermicon.icons.near_words import did_you_mean, nearest_words
 
-from ..inputs import InputError
+from ..inputs import InputError, shipped_table
 from ..rig.rig import Rig
 from ..rig.rigfile import rig_keys, unknown_key
 from ..rig.settings import flattened
@@ -43,9 +41,8 @@ CONTACT = "contact.resistance_m2K_per_W"
 
 def _table() -> dict[str, FitKey]:
     """The keys of ``data/fit-keys.toml``, in their order; `usual` is the shipped uncertainty unless given there."""
-    text = resources.files("thermicon.circuit").joinpath("data/fit-keys.toml").read_text(encoding="utf-8")
     keys = {}
-    for key, row in tomllib.loads(text).items():
+    for key, row in shipped_table("fit-keys.toml").items():
         usual = row["usual"] if "usual" in row else getattr(Uncertainty(), row["uncertainty"])
         keys[key] = FitKey(**{"uncertainty": "", **row, "key": key, "usual": usual})
     return keys

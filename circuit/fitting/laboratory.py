@@ -10,7 +10,7 @@ from thermicon.icons import Icon, load_library
 
 from ..rig.rig import Rig
 from ..solver.simulate import simulate
-from .identify import NOISE_K, NOISE_V, expected_sd, half_width, is_identified, tellable, with_channels
+from .identify import NOISE_K, NOISE_V, expected_sd, half_width, tellable, with_channels
 from .keys import FitError, FitKey, free_keys, possible_keys
 from .log import Log
 from .problem import OFFSET_SD_K, FitProblem
@@ -40,7 +40,6 @@ def synthetic_log(
     columns: Sequence[str] = ("display_C", "voltage_V"),
     rate_Hz: float = 100.0,
     noise_K: float = NOISE_K,
-    noise_V: float = NOISE_V,
     offset_sd_K: float = OFFSET_SD_K,
     name: str = "synthetic.csv",
 ) -> Log:
@@ -52,7 +51,7 @@ def synthetic_log(
         exact = trace.probe(column[6:-2]) if column.startswith("probe_") else getattr(trace, column)
         temperature = column.endswith("_C")
         offset = random.normal(0.0, offset_sd_K) if temperature else 0.0
-        values[column] = exact + offset + random.normal(0.0, noise_K if temperature else noise_V, len(exact))
+        values[column] = exact + offset + random.normal(0.0, noise_K if temperature else NOISE_V, len(exact))
     return Log.of(name, values)
 
 
@@ -93,7 +92,7 @@ def plan(
     found = []
     for columns in CHOICES:
         deviations = expected_sd(with_channels(problem, problem.first, columns, only=True), problem.first).tolist()
-        each = list(zip(problem.keys, deviations, strict=True))
-        known = tuple(is_identified(key.log, sd, key.usual) for key, sd in each)
-        found.append(Forecast(columns, problem.keys, tuple(half_width(key.log, sd) for key, sd in each), known))
+        widths = tuple(half_width(key.log, sd) for key, sd in zip(problem.keys, deviations, strict=True))
+        known = tuple(width < key.usual for key, width in zip(problem.keys, widths, strict=True))
+        found.append(Forecast(columns, problem.keys, widths, known))
     return tuple(found)

@@ -115,11 +115,6 @@ class FitProblem:
         return np.array([item.low for item in self.unknowns]), np.array([item.high for item in self.unknowns])
 
     @property
-    def along(self) -> tuple[Unknown, ...]:
-        """Unknowns that are fitted along with the keys."""
-        return self.unknowns[len(self.keys) :]
-
-    @property
     def alone(self) -> bool:
         """Whether no run has a known current, so that the display is the drive."""
         return all(run.driven_by == DISPLAY for run in self.runs)
@@ -192,15 +187,15 @@ class FitProblem:
 
     def residuals(self, theta: Array, sigma: Sequence[float]) -> Array:
         """Simulated minus measured, 0 outside of runs, then what is fitted along, in SDs of noise and priors."""
-        found = self.predictions(theta)
+        found, along = self.predictions(theta), self.unknowns[len(self.keys) :]
         if found is None:
             count = sum(len(channel.values) for _, _, channel in self.channels())
-            return np.full(count + len(self.along), IMPOSSIBLE)
+            return np.full(count + len(along), IMPOSSIBLE)
         parts = [
             np.where(self.inside(theta, r, channel), self.modelled(theta, r, c, found[r]) - channel.values, 0.0)
             for r, c, channel in self.channels()
         ]
-        prior = [value / item.sd for item, value in zip(self.along, theta[len(self.keys) :], strict=True)]
+        prior = [value / item.sd for item, value in zip(along, theta[len(self.keys) :], strict=True)]
         return np.concatenate([*self._independent(parts, tuple(sigma)), np.array(prior)])
 
     def _independent(self, parts: Sequence[Array], sigma: tuple[float, ...]) -> list[Array]:

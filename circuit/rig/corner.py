@@ -8,7 +8,6 @@ from thermicon.icons.number_text import signed
 
 from .faults import sentence
 from .module import ZERO_C_IN_K, Peltier
-from .parts import HeatSink
 from .rig import Rig
 from .rigfile import RigError
 
@@ -40,22 +39,21 @@ def perturbed(
     _check(rig, shares, shifts)
     if not any((*shares.values(), ambient_K, heat_sink_K)):
         return rig
-    changed = rig
-    if contact_resistance_relative:
-        resistance = rig.contact.resistance_m2K_per_W * (1.0 + contact_resistance_relative)
-        changed = replace(changed, contact=replace(rig.contact, resistance_m2K_per_W=resistance))
-    if ambient_K:
-        ambient = rig.ambient.model_copy(update={"temperature_C": rig.ambient.temperature_C + ambient_K})
-        changed = replace(changed, ambient=ambient, deep_C=_deep_C(rig, ambient.temperature_C))
-    if heat_sink_K:
-        sink, passive = rig.heat_sink, rig.heat_sink.passive
+    contact, ambient_C = rig.contact, rig.ambient.temperature_C + ambient_K
+    contact = replace(contact, resistance_m2K_per_W=contact.resistance_m2K_per_W * (1.0 + contact_resistance_relative))
+    ambient, pump = rig.ambient.model_copy(update={"temperature_C": ambient_C}), rig.pump
+    if pump is not None:
+        sink, passive = pump.heat_sink, pump.heat_sink.passive
         other_air = passive and replace(passive, air_C=passive.air_C + heat_sink_K)  # that is what it tends to
-        changed = _pumped(changed, replace(sink, temperature_C=sink.temperature_C + heat_sink_K, passive=other_air))
-    if seebeck_relative or conductance_relative or plates_relative:
-        changed = _pumped(changed, module=_module(rig, seebeck_relative, conductance_relative, plates_relative))
+        sink = replace(sink, temperature_C=sink.temperature_C + heat_sink_K, passive=other_air)
+        module = _module(rig, seebeck_relative, conductance_relative, plates_relative)
+        pump = replace(pump, heat_sink=sink, module=module)
     # Caches are keyed by the document.
     document = json.loads(rig.document) | {"corner": {**shares, "ambient": ambient_K, "heat sink": heat_sink_K}}
-    return replace(changed, document=json.dumps(document, sort_keys=True, ensure_ascii=False))
+    text, deep_C = json.dumps(document, sort_keys=True, ensure_ascii=False), rig.deep_C
+    if ambient_K:
+        deep_C = _deep_C(rig, ambient_C)
+    return replace(rig, contact=contact, ambient=ambient, deep_C=deep_C, pump=pump, document=text)
 
 
 def with_gain(rig: Rig, gain_relative: float) -> Rig:
@@ -68,11 +66,6 @@ def with_gain(rig: Rig, gain_relative: float) -> Rig:
     document["driver"] |= {"current_min_A": low, "current_limit_A": high}
     pump = replace(rig.pump, driver=replace(driver, current_min_A=low, current_max_A=high))
     return replace(rig, pump=pump, document=json.dumps(document, sort_keys=True, ensure_ascii=False))
-
-
-def _pumped(rig: Rig, heat_sink: HeatSink | None = None, module: Peltier | None = None) -> Rig:
-    assert rig.pump is not None
-    return replace(rig, pump=replace(rig.pump, heat_sink=heat_sink or rig.heat_sink, module=module or rig.module))
 
 
 def _deep_C(rig: Rig, ambient_C: float) -> float:

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable
-from functools import cache
-from importlib import resources
 from typing import Annotated, NamedTuple, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
-from ..inputs import one_line, paragraph
+from ..inputs import one_line, paragraph, shipped_table
 
 PARAMETERS = ("seebeck_V_per_K", "resistance_ohm", "thermal_resistance_K_per_W")
 """The three parameters of a module in a rig file."""
@@ -113,16 +110,13 @@ def unit_of(key: str) -> str:
     return next((written for unit, written in UNITS.items() if key.endswith(f"_{unit}")), "")
 
 
-@cache
-def _words() -> dict[str, dict[str, str]]:
-    text = resources.files("thermicon.circuit").joinpath("data/rig-words.toml").read_text(encoding="utf-8")
-    return tomllib.loads(text)
+RIG_WORDS = "rig-words.toml"
 
 
 def sentence(which: str, /, **values: object) -> str:
     """A sentence of ``data/rig-words.toml`` with the values that it names."""
     table, name = which.split(".")
-    return _words()[table][name].format(**values)
+    return str(shipped_table(RIG_WORDS)[table][name]).format(**values)
 
 
 class Unusual(NamedTuple):
@@ -134,7 +128,8 @@ class Unusual(NamedTuple):
     @property
     def brief(self) -> str | None:
         """The same in a few words; None where safety needs the sentence."""
-        return _words()["brief"].get(self.kind)
+        brief: dict[str, str] = shipped_table(RIG_WORDS)["brief"]
+        return brief.get(self.kind)
 
 
 def unusual(kind: str, /, **values: object) -> Unusual:

@@ -5,17 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache
-from importlib import resources
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from thermicon.icons.atomic import OutputError, complete_or_absent
-from thermicon.icons.files.shipped import beside
 from thermicon.icons.model.arguments import checked
-from thermicon.icons.near_words import did_you_mean
 
-from ..inputs import read_text
+from ..inputs import named_text, shipped_names
 from .assemble import HeatPump, probes_of, pump_of, skin_of
 from .faults import sentence
 from .module import Peltier
@@ -125,15 +122,7 @@ class Rig:
         A file with the name of a shipped rig is read in its place; a folder of that name is not. Raises RigError with
         every fault of the file on a line of its own, or the nearest name where there is no such rig.
         """
-        path, names = Path(source), rig_names()
-        named = path.suffix == ".toml" and path.stem not in names
-        if named or (path.exists() and not (path.is_dir() and str(source) in names)):
-            text = read_text(path, "rig file", 1, RigError)
-            return _build(parse_toml(text, str(path)), str(path))
-        if str(source) not in names:
-            hint = did_you_mean(path.stem, names, beside="" if path.stem in names else beside(path, ".toml"))
-            raise RigError(f"{source}: no such rig; {hint}")
-        return _shipped(str(source))
+        return _read(*named_text(source, rig_names(), "rig", RigError))
 
     @property
     def toml(self) -> str:
@@ -245,17 +234,12 @@ AnyRig = Rig | str | Path | None
 
 def rig_names() -> tuple[str, ...]:
     """Return the names of the shipped rigs, which `Rig.load` accepts, the default first."""
-    names = [path.name.removesuffix(".toml") for path in _rig_folder().iterdir() if path.name.endswith(".toml")]
-    return tuple(sorted(names, key=lambda name: (name != "thenar", name)))
+    return tuple(sorted(shipped_names("rigs"), key=lambda name: name != "thenar"))
 
 
-def _rig_folder() -> Any:
-    return resources.files("thermicon.circuit") / "rigs"
-
-
-@cache
-def _shipped(name: str) -> Rig:
-    return _build(parse_toml((_rig_folder() / f"{name}.toml").read_text("utf-8"), f"rig {name}"), f"rig {name}")
+@lru_cache(maxsize=64)
+def _read(text: str, where: str) -> Rig:
+    return _build(parse_toml(text, where), where)
 
 
 def _build(document: Mapping[str, Any], where: str) -> Rig:

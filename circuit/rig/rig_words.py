@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import textwrap
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import signed
@@ -41,7 +42,15 @@ HIGH_RESTING_FLUX_W_PER_M2 = 150.0
 
 def rig_summary(rig: Rig, for_methods: bool = False) -> str:
     """What to know of a rig, as lines; a methods section has its driver, but no title that may be out of date."""
-    rows = _rows(rig)
+    flux = -rig.resting_flux_W_per_m2
+    how = "from the heat balance" if rig.skin.deep_C is None else "given"
+    lost = f"{abs(flux):.0f} W/m² {'lost' if flux >= 0 else 'taken up'} by bare skin"
+    rows = [
+        ("site", f"{rig.site}, {rig.contact.area_m2 * 1e4:g} cm² in contact{_resistance(rig.contact)}"),
+        ("rest", f"skin {rig.skin.rest_C:.1f} °C, blood and deep tissue {rig.deep_C:.2f} °C ({how}), {lost}"),
+        ("receptors", rig.skin.receptor_words()),
+        ("module", rig.module_source) if rig.thermode is None else ("thermode", _thermode(rig.thermode)),
+    ]
     named = for_methods and "name" in json.loads(rig.document).get("module", {})
     if not for_methods:
         rows += [*(("warning", text) for text in rig.warnings), *(("note", text) for text in rig.notes)]
@@ -54,18 +63,6 @@ def rig_summary(rig: Rig, for_methods: bool = False) -> str:
         said, first = text.rstrip(".") if for_methods else text, f"  {label:<11}"
         lines += textwrap.wrap(said, WIDTH, initial_indent=first, subsequent_indent=" " * 13)
     return "\n".join(lines)
-
-
-def _rows(rig: Rig) -> list[tuple[str, str]]:
-    flux = -rig.resting_flux_W_per_m2
-    how = "from the heat balance" if rig.skin.deep_C is None else "given"
-    lost = f"{abs(flux):.0f} W/m² {'lost' if flux >= 0 else 'taken up'} by bare skin"
-    return [
-        ("site", f"{rig.site}, {rig.contact.area_m2 * 1e4:g} cm² in contact{_resistance(rig.contact)}"),
-        ("rest", f"skin {rig.skin.rest_C:.1f} °C, blood and deep tissue {rig.deep_C:.2f} °C ({how}), {lost}"),
-        ("receptors", rig.skin.receptor_words()),
-        ("module", rig.module_source) if rig.thermode is None else ("thermode", _thermode(rig.thermode)),
-    ]
 
 
 def _resistance(contact: Contact) -> str:
@@ -95,6 +92,7 @@ USUAL = {
 large modules, from the thinnest facial skin to a heel, and within the dermis; all are choices of this project."""
 
 
+@lru_cache(maxsize=512)
 def rig_warnings(rig: Rig) -> tuple[Unusual, ...]:
     """Return everything unusual: heat loss, blood, loosened limits, origin of the module's numbers."""
     pump = () if rig.pump is None else (*_driver(rig), *rig.pump.origin.warnings, *_module(rig))

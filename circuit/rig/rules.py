@@ -87,9 +87,10 @@ class Limits:
         return f"Limits({len(self.rules)} rules, {'; '.join(self.changed) or 'as shipped'})"
 
     @staticmethod
+    @cache
     def shipped() -> Limits:
         """Return the shipped limits."""
-        return _shipped()
+        return Limits(tuple(rule for record in limit_table() for rule in _rules(record)))
 
     @staticmethod
     def of(changes: Mapping[str, float], reason: str = "") -> Limits:
@@ -135,7 +136,7 @@ def limit_table() -> RecordTable:
 
 def safety_keys() -> tuple[str, ...]:
     """Keys of a rig file's [safety] table that change a limit, in the order of the table of limits."""
-    return tuple(dict.fromkeys(rule.key for rule in _shipped().rules if rule.key))
+    return tuple(dict.fromkeys(rule.key for rule in Limits.shipped().rules if rule.key))
 
 
 def faults_of(changes: Mapping[str, float], reason: str = "") -> list[str]:
@@ -192,14 +193,9 @@ def _in_words(rules: Iterable[Rule]) -> tuple[str, ...]:
     return tuple(texts.values())
 
 
-@cache
-def _shipped() -> Limits:
-    return Limits(tuple(rule for record in limit_table() for rule in _rules(record)))
-
-
 def _changed(changes: Mapping[str, float], reason: str) -> Limits:
     rules = []
-    for rule in _shipped().rules:
+    for rule in Limits.shipped().rules:
         if rule.key in changes:
             value = changes[rule.key]
             if rule.relative or rule.unit == "K/s":  # one figure for both directions

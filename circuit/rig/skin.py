@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -123,7 +123,7 @@ class SkinColumn:
     capacity_J_per_m2K: Array
     perfusion_W_per_m2K: Array
     resistance_m2K_per_W: Array
-    blood_capacity_J_per_m3K: float = field(default=0.0)
+    blood_capacity_J_per_m3K: float = 0.0
 
     def __post_init__(self) -> None:
         for array in (self.depth_m, self.capacity_J_per_m2K, self.perfusion_W_per_m2K, self.resistance_m2K_per_W):
@@ -172,9 +172,7 @@ def _sections(skin: Skin, blood: float) -> SkinColumn:
     assert skin.elements is not None
     per = _per_layer(skin, blood)
     layer_of = np.repeat(np.arange(len(skin.layers)), skin.elements)
-    cell = np.repeat([layer.thickness_m for layer in skin.layers], skin.elements) / np.repeat(
-        skin.elements, skin.elements
-    )
+    cell = np.repeat(np.array([layer.thickness_m for layer in skin.layers]) / skin.elements, skin.elements)
     half = cell / per[2][layer_of] / 2
     resistance = np.concatenate([half, [0.0]])
     resistance[1:] += half

@@ -5,7 +5,6 @@ written reason, which is reported with every verdict.
 """
 
 from collections.abc import Iterator
-from functools import cache
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field
@@ -65,6 +64,5 @@ def tightened(uncertainty: Uncertainty) -> tuple[str, ...]:
     )
 
 
-@cache
 def _shipped() -> dict[str, float]:
     return {record.quantity: record.central for record in shipped_records("uncertainty.toml")}

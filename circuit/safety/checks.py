@@ -302,11 +302,6 @@ class Demands:
             f"{cut.react_within_s:g} s, {len(self.faults)} single faults)"
         )
 
-    @property
-    def within_s(self) -> tuple[float, float]:
-        """How quickly watchdog and cut-off must act, in s."""
-        return self.watchdog_s, self.cut_off_display_C.react_within_s
-
     def to_dict(self) -> dict[str, object]:
         """All of it in the form of a sidecar's `hardware_must_prevent`."""
         return {**asdict(self), "faults": [fault.to_dict() for fault in self.faults]}

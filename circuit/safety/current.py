@@ -89,10 +89,6 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         pairs = list(zip(self.ensemble.networks, state.nodes_C, strict=True))
         return np.array([[network.read(nodes, name) for network, nodes in pairs] for name in WATCHED])
 
-    def begun_C(self, plays: Sequence[CurrentPlay]) -> list[Array]:
-        """Skin at the rest of each play."""
-        return [self.now(play, self.rest(play))[WATCHED.index("skin_C")] for play in plays]
-
     def play(self, play: CurrentPlay, state: State) -> Iterator[tuple[Stretch, State]]:
         """The drive in stretches."""
         return self.ensemble.play(play.drive, state)
@@ -159,7 +155,7 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         """The resting current held."""
         return state if rest_s <= 0 else self.ensemble.rest(play.rest_A, state, rest_s)
 
-    def unpowered(self, play: CurrentPlay) -> State:
+    def unpowered(self) -> State:
         """Zero current held without limit of time."""
         return self.ensemble.at_rest(0.0)
 
@@ -167,7 +163,7 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         """Node by node: no power, instants of plays, zero current since, and the test of the polarity then."""
         from .demanded import TEST_S, testing_A
 
-        off, test_A = self.ensemble.at_rest(0.0), testing_A(self.ensemble)
+        off, test_A = self.unpowered(), testing_A(self.ensemble)
         found = []
         for begun, most in zip(bounds, (np.maximum, np.minimum), strict=True):
             nodes = most(off.nodes_C, begun.nodes_C)

@@ -138,7 +138,7 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
 
     def cycle(self, play: DisplayCourse, pause_s: float) -> list[Array]:
         """Each mode decays by the same share in every cycle."""
-        forced = self.after(play, pause_s, self._none())
+        forced = self.after(play, pause_s, self.unpowered())
         length = play.end_s + left_s(play, pause_s)
         return [end / -np.expm1(-modes.rate_per_s * length) for modes, end in zip(self.modes, forced, strict=True)]
 
@@ -153,7 +153,7 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
     def map(self, play: DisplayCourse, pause_s: float) -> PlayMap:
         """A play and its pause as a map of lumps, whose entries are never negative."""
         length = play.end_s + left_s(play, pause_s)
-        forced = self.after(play, pause_s, self._none())
+        forced = self.after(play, pause_s, self.unpowered())
         decays = [(modes.lumps * np.exp(-modes.rate_per_s * length)) @ modes.unlumps for modes in self.modes]
         return PlayMap(np.array(decays), self._lumps(forced))
 
@@ -161,9 +161,9 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         """The first temperature held."""
         return [modes.after(rest_s, play.first_C, begun) for modes, begun in zip(self.modes, state, strict=True)]
 
-    def unpowered(self, play: DisplayCourse) -> list[Array]:
+    def unpowered(self) -> list[Array]:
         """Skin as warm as deep tissue, under a display that conducts no heat."""
-        return self._none()
+        return [np.zeros_like(modes.rate_per_s) for modes in self.modes]
 
     def stopped(
         self, plays: Sequence[DisplayCourse], bounds: tuple[list[Array], list[Array]]
@@ -172,7 +172,7 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         bounding = []
         for bound, warm in zip(bounds, (True, False), strict=True):
             most = np.maximum if warm else np.minimum
-            lumps = most(self._lumps(self.farthest(plays, bound, warm)), self._lumps(self._none()))
+            lumps = most(self._lumps(self.farthest(plays, bound, warm)), self._lumps(self.unpowered()))
             lost = [
                 [modes.lumps @ (np.exp(-modes.rate_per_s * time_s) * (modes.unlumps @ each))
                  for modes, each in zip(self.insulated, lumps, strict=True)]
@@ -249,9 +249,6 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         tally.add(ENDING_ROWS_S, self.held(level_C, state, ENDING_ROWS_S), rates=False, sums=False)
         broken = [check.since_s for check in tally.checks() if check.severity == "hard" and check.since_s is not None]
         return min(broken, default=ENDING_S)
-
-    def _none(self) -> list[Array]:
-        return [np.zeros_like(modes.rate_per_s) for modes in self.modes]
 
     def _lumps(self, state: Sequence[Array]) -> Array:
         """Lumps (corners, n) above the deep node's temperature, for modes."""

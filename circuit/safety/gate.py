@@ -235,15 +235,15 @@ def _gated(
     singles = [[Single.of(plant, play, limits) for play in ways] for ways in drives]
     safe = [all(single.safe for single in ways) for ways in singles]
     together = [number for number, each in enumerate(safe) if each]
-    alone = [[number] for number, each in enumerate(safe) if not each]  # never written, so never part of a sequence
     gates: dict[int, Gate] = {}
 
     def judge(group: list[int], safe: bool) -> None:
         judged = _gated_together(plant, [singles[number] for number in group], limits, pause_s, safe)
         gates.update(zip(group, judged, strict=True))
 
-    for group in alone:
-        judge(group, False)
+    for number, each in enumerate(safe):
+        if not each:  # never written, so never part of a sequence
+            judge([number], False)
     if together:
         judge(together, True)
     if len(together) > 1 and not all(gates[number].safe_once for number in together):

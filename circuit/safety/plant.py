@@ -90,9 +90,9 @@ class Plant(ABC, Generic[Played, States]):
     def now(self, play: Played, state: States) -> Array:
         """WATCHED (4, corners) before a play."""
 
-    @abstractmethod
     def begun_C(self, plays: Sequence[Played]) -> list[Array]:
-        """Skin (corners,) before each of the plays, from which changes count."""
+        """Skin (corners,) at the rest of each of the plays, from which changes count."""
+        return [self.now(play, self.rest(play))[WATCHED.index("skin_C")] for play in plays]
 
     @abstractmethod
     def play(self, play: Played, state: States) -> Iterator[tuple[Stretch, States]]:
@@ -119,7 +119,7 @@ class Plant(ABC, Generic[Played, States]):
         """States after the rest before a play has been held for a time in s."""
 
     @abstractmethod
-    def unpowered(self, play: Played) -> States:
+    def unpowered(self) -> States:
         """Steady states of a display without power."""
 
     @abstractmethod

@@ -96,18 +96,18 @@ class Repeating(Generic[Played, States]):
     plant: Plant[Played, States]
     drives: Sequence[Sequence[Played]]
     limits: Limits
-    _known: dict[tuple[float, bool], list[list[Tally]]] = field(default_factory=dict)
+    _known: dict[float, list[list[Tally]]] = field(default_factory=dict)
 
     @property
     def plays(self) -> list[Played]:
         """Every drive in every way."""
         return [play for ways in self.drives for play in ways]
 
-    def tallies(self, pause_s: float, endings: bool = True) -> list[list[Tally]]:
+    def tallies(self, pause_s: float) -> list[list[Tally]]:
         """Tallies of each drive with a pause between plays: steady, after another one, between the bounds of all."""
-        if (pause_s, endings) not in self._known:
-            self._known[pause_s, endings] = list(self._tallies(pause_s, endings))
-        return self._known[pause_s, endings]
+        if pause_s not in self._known:
+            self._known[pause_s] = list(self._tallies(pause_s, endings=True))
+        return self._known[pause_s]
 
     def bounds(self, pause_s: float) -> tuple[list[States], States, States]:
         """States before plays with a pause between them: of each steady cycle, and the warm and the cold bound."""
@@ -133,8 +133,9 @@ class Repeating(Generic[Played, States]):
 
     def safe(self, pause_s: float, endings: bool = True) -> bool:
         """Whether no hard limit is passed with a pause between plays."""
-        known = self._known.get((pause_s, endings)) or self._tallies(pause_s, endings)
-        return all(tally.passes() for drive_tallies in known for tally in drive_tallies)
+        known = self._known.get(pause_s) if endings else None
+        drives = known or self._tallies(pause_s, endings)
+        return all(tally.passes() for drive_tallies in drives for tally in drive_tallies)
 
     def judged(
         self, play: Played, before: Before, state: States, begun_C: Array | None, endings: bool
@@ -165,24 +166,20 @@ def plays_in(play: GatePlay, pause_s: float, session_s: float) -> int:
 
 def shortest_pause_s(repeating: Repeating[Played, States]) -> float | None:
     """The shortest safe pause in s, to 0.1 s; None up to 10 min. Searched in the worst corners, and checked in all."""
-    tallies = [tally for drive_tallies in repeating.tallies(0.0) for tally in drive_tallies]
-    if all(tally.passes() for tally in tallies):
-        return 0.0
-    plant = repeating.plant
-    count = len(plant.corners)
-    deciding = {lane % count for tally in tallies for lane in tally.worst_lanes()}
+    deciding, pause_s = set[int](), 0.0
     while True:
-        few = Repeating(plant.only(sorted(deciding)), repeating.drives, repeating.limits)
-        pause_s = shortest_of(partial(few.safe, endings=False))
-        if pause_s is None:
-            return None
-        after = [tally for drive_tallies in repeating.tallies(pause_s) for tally in drive_tallies]
-        if all(tally.passes() for tally in after):
+        tallies = [tally for drive_tallies in repeating.tallies(pause_s) for tally in drive_tallies]
+        if all(tally.passes() for tally in tallies):
             return pause_s
-        more = {lane % count for tally in after for lane in tally.worst_lanes()}
-        if more <= deciding:
+        worst = {corner for tally in tallies for corner in tally.worst_lanes()}
+        if worst <= deciding:
             break
-        deciding |= more
+        deciding |= worst
+        few = Repeating(repeating.plant.only(sorted(deciding)), repeating.drives, repeating.limits)
+        found_s = shortest_of(partial(few.safe, endings=False))
+        if found_s is None:
+            return None
+        pause_s = found_s
     added = max(PAUSE_STEP_S, 0.02 * pause_s)
     while pause_s < LONGEST_PAUSE_S:  # a longer one, in steps that grow from 2 %
         pause_s = min(math.ceil((pause_s + added) / PAUSE_STEP_S) * PAUSE_STEP_S, LONGEST_PAUSE_S)

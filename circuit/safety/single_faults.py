@@ -20,6 +20,7 @@ from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 from .checks import CutOff, Harm, SingleFault
 from .ensemble import Ensemble, between
+from .held import COLUMN_OF
 from .tally import WATCHED
 
 HANG_S, INSTANTS = 60.0, 8
@@ -153,7 +154,7 @@ class Faulty:
         """How far lanes pass a limit if a cut-off acts in time on a driver that is stuck at a current."""
         stuck = moments.stuck_at(full_A)
         display = self.ensemble.watch(full_A, moments.state, STUCK_ROWS_S, moments.rigs, ("display_C",))[0]
-        return self._cut_K(stuck, _late_s(stuck, display, cut.low, cut.high, cut.react_within_s))[1]
+        return self._cut_K(stuck, _late_s(display, cut.low, cut.high, cut.react_within_s))[1]
 
     def cut_off(
         self,
@@ -204,7 +205,7 @@ class Faulty:
     def _reaction_s(self, moments: Moments, values: Array, low: float, high: float) -> float:
         """The longest reaction time of a cut-off that is safe for currents that would give `values`; 0 for none."""
         display = values[WATCHED.index("display_C")]
-        late_s = [_late_s(moments, display, low, high, time_s) for time_s in REACTIONS_S]
+        late_s = [_late_s(display, low, high, time_s) for time_s in REACTIONS_S]
         safe = bisect_left(late_s, 1, key=lambda cut_s: int(self._cut_K(moments, cut_s)[1].max() > 0.0))
         return (0.0, *REACTIONS_S)[safe]
 
@@ -240,7 +241,7 @@ def side_by_side(states: Sequence[State]) -> State:
     return State(*(np.concatenate([getattr(one, part) for one in states]) for part in ("nodes_C", "sink")))
 
 
-def _late_s(moments: Moments, display: Array, low: float, high: float, reaction_s: float) -> Array:
+def _late_s(display: Array, low: float, high: float, reaction_s: float) -> Array:
     """When a cut-off at two temperatures of the display (lanes, STUCK_ROWS_S) has acted in each lane."""
     out = ~((display > low) & (display < high))
     first = out.argmax(axis=1)
@@ -251,12 +252,7 @@ def _late_s(moments: Moments, display: Array, low: float, high: float, reaction_
 def _passed(limits: Limits, values: Array) -> tuple[Harm | None, Array]:
     """The limit that is passed the farthest, and by how much in each lane in K; negative inside."""
     farthest, harm = np.full(values.shape[1], -np.inf), None
-    columns = {
-        "skin surface": "skin_C",
-        "display": "display_C",
-        "cold-receptor depth": "cold_receptor_C",
-        "hot plate": "hot_plate_C",
-    }
+    columns = {**COLUMN_OF, "display": "display_C", "hot plate": "hot_plate_C"}
     for rule in limits.rules:
         if rule.severity != "hard" or rule.relative or rule.quantity not in columns or rule.above_C is not None:
             continue

@@ -93,7 +93,7 @@ class Beginning(Generic[Played, States]):
         plant, checks = self.repeating.plant, []
         for play in self.repeating.drives[number]:
             tally = Tally(self.repeating.limits, plant.corners, Scenario(way=play.way))
-            state = plant.rested(play, plant.unpowered(play), rest_s)
+            state = plant.rested(play, plant.unpowered(), rest_s)
             for (rows, values), _ in plant.play(play, state):
                 tally.add(rows, values, rates=plant.rates)
             checks.append(tally.checks())

@@ -3,14 +3,13 @@
 Nothing is decided here and nothing that decides imports this module: it is loaded when somebody reads.
 """
 
-import tomllib
 from collections.abc import Sequence
-from importlib import resources
 from math import isnan
 from typing import Any
 
 from thermicon.icons.number_text import signed, significant, unit_text
 
+from ..inputs import shipped_table
 from ..rig.uncertainty import WORDS
 from .checks import Check, Cure, Harm, Scenario, SingleFault, cures_of, hard_of, hard_reason
 from .plant import ENDING_S
@@ -107,14 +106,13 @@ def repeated_reason(repeated: Repeated) -> str | None:
     return f"{reason}; the shortest safe pause is {shortest:g} s"
 
 
-def _fault_words() -> dict[str, Any]:
-    """The name of each kind of fault, its effect, and what prevents its harm."""
-    return tomllib.loads((resources.files("thermicon.circuit") / "data" / "fault-words.toml").read_text("utf-8"))
+FAULT_WORDS = "fault-words.toml"
+"""The name of each kind of fault, its effect, and what prevents its harm."""
 
 
 def fault_table(fault: SingleFault) -> dict[str, object]:
     """A single fault as a sidecar holds it: what fails, the verdict, what it does, and what prevents harm."""
-    words = _fault_words()[fault.kind]
+    words = shipped_table(FAULT_WORDS)[fault.kind]
     told, cure, why = _prevented(fault)
     text = words["does"].format(**told)
     return {"fault": words["name"], "colour": fault.colour, "text": text, "prevented_by": f"{cure}{why}"}
@@ -141,7 +139,7 @@ def _prevented(fault: SingleFault) -> tuple[dict[str, Any], str, str]:
         span, told["test_A"] = check.swapped_skin_C, signed(check.test_current_A, ".3g")
     if span is not None:
         told["low"], told["high"] = (signed(level, ".1f") for level in span)
-    ways = _fault_words()[fault.kind]["prevented"]
+    ways = shipped_table(FAULT_WORDS)[fault.kind]["prevented"]
     cure, why = next((cure, why) for key, cure, why in ways if not key or told[key])
     return told, cure.format(**told), why.format(**told)
 

@@ -7,13 +7,13 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from functools import partial
-from importlib import resources
 
 import numpy as np
 
 from thermicon.icons.model.clean_text import clean_line
 
 from ...arrays import Array
+from ...inputs import shipped_text
 from ..delivered_drive import DeliveredDrive
 from .form import (
     PLAYS_SAMPLES,
@@ -154,7 +154,7 @@ def player_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes
 
 def filled(template: str, values: Mapping[str, str]) -> bytes:
     """Return a template of `circuit/data` with each `@NAME@` replaced."""
-    text = (resources.files("thermicon.circuit") / "data" / template).read_text("utf-8")
+    text = shipped_text(f"data/{template}")
     for name, value in values.items():
         text = text.replace(f"@{name}@", value)
     return text.encode("ascii")

@@ -149,7 +149,7 @@ def test_what_it_demands_holds_when_simulated() -> None:
     assert (hang.colour, stuck.colour, demands.watchdog_s) == ("green", "red", 60.0), "where it may go it may stay"
     assert begins.kind == "unpowered" and demands.rest_before_first_play_s is not None
     react, cut = demands.cut_off_display_C.react_within_s, demands.cut_off_display_C
-    for begun in (UNDER.steady(32.0), UNDER.rested(hot, UNDER.unpowered(hot), demands.rest_before_first_play_s)):
+    for begun in (UNDER.steady(32.0), UNDER.rested(hot, UNDER.unpowered(), demands.rest_before_first_play_s)):
         for level in STUCK:
             values = UNDER.held(level, begun, np.linspace(0.0, react, 200))
             assert values[skin].min() >= 15.0
