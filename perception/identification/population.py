@@ -121,11 +121,6 @@ class PopulationResponse:
     episodes: Episodes
     detection: Detection | None
 
-    def of(self, icons: Sequence[int]) -> PopulationResponse:
-        """Some of the icons, without their detection."""
-        places = list(icons)
-        return PopulationResponse(Episodes(self.episodes.features[:, places], self.episodes.counts[:, places]), None)
-
     @property
     def detected(self) -> Detection:
         """Detection of every icon by every person; a ValueError where it was not asked for."""
