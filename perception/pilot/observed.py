@@ -29,8 +29,6 @@ from .states import LaboratoryPrior
 from .trials import Trials
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from thermicon.icons import IconSet
 
 DRAWS, LEAST_DRAWS = 1000, 20
@@ -118,12 +116,9 @@ class Observed(Drawn, Tabled, Generic[D, F]):
             "constants": [asdict(each) for each in self.constants],
         }
 
-    def to_frame(self) -> pd.DataFrame:
+    def rows(self) -> list[dict[str, Any]]:
         """One row for each set before the data were seen, and one after."""
-        import pandas as pd
-
-        rows = [row for each in self.predictions for row in (each.before.row("before"), each.after.row("after"))]
-        return pd.DataFrame(rows)
+        return [row for each in self.predictions for row in (each.before.row("before"), each.after.row("after"))]
 
     def to_json(self) -> str:
         """Every number as JSON text."""

@@ -22,8 +22,6 @@ from .rules import RuleResult
 from .scores import IconScore, PairScore, counted, disagreements
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from ..identification.carry_over import CarryOver
     from ..identification.map import PerceptualMap
     from ..identification.task import Task
@@ -277,12 +275,6 @@ class Ranking(Drawn, Tabled):
         from ..identification.map import map_of
 
         return map_of(self)
-
-    def to_frame(self) -> pd.DataFrame:
-        """The rows as a table."""
-        import pandas as pd
-
-        return pd.DataFrame(self.rows())
 
     def to_dict(self) -> dict[str, Any]:
         """The content of `rank --json` as plain data: missing values are None, never NaN."""

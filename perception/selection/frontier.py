@@ -29,8 +29,6 @@ from .request import ChoiceError, Objective, Selection
 from .subset_identification import PEOPLE, RESTARTS
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from thermicon.icons import IconSet
 
     from ..ranking.ranking import Ranking
@@ -94,12 +92,6 @@ class Frontier(Drawn, Tabled):
             }
             for k, point in enumerate(self.points)
         ]
-
-    def to_frame(self) -> pd.DataFrame:
-        """The rows as a table."""
-        import pandas as pd
-
-        return pd.DataFrame(self.rows())
 
     def __repr__(self) -> str:
         first, job = self.points[0], self.job
