@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, held
 from ..criteria import FELT_FROM
 from ..identification.episodes import dprimes_from_memory
 from ..identification.population import run_end_s
@@ -97,15 +97,15 @@ class Pool:
     def dprimes(self, kept: Pool, memory: MemoryForm, observer: Observer) -> Array:
         """d′ from memory (these, kept) of the nominal person, on the longer clock."""
         n = max(self.cold.shape[1], kept.cold.shape[1])
-        one, other = ((_held(pool.cold, n), _held(pool.warm, n)) for pool in (self, kept))
+        one, other = ((held(pool.cold, n), held(pool.warm, n)) for pool in (self, kept))
         names = [[trace.icon or "" for trace in pool.traces] for pool in (self, kept)]
         return dprimes_from_memory(one, other, self.dt_s, observer, memory, (names[0], names[1]))
 
     def limits(self, most_s: float | None, most_J: float | None) -> Totals:
         """The totals that a choice must keep, as costs of every icon."""
-        rows = [(self.durations_s, most_s)] * (most_s is not None) + [(self.energies_J, most_J)] * (most_J is not None)
-        costs = np.array([each for each, _ in rows]).reshape(-1, len(self))
-        return Totals(costs, tuple(most for _, most in rows if most is not None))
+        both = (self.durations_s, most_s), (self.energies_J, most_J)
+        kept = [(costs, most) for costs, most in both if most is not None]
+        return Totals(np.array([costs for costs, _ in kept]).reshape(-1, len(self)), tuple(most for _, most in kept))
 
     def totals_text(self, count: int, most_s: float | None, most_J: float | None) -> str:
         """The totals that a choice must keep, each with the least that so many icons take."""
@@ -181,10 +181,6 @@ class Pool:
         forced = f" with {', '.join(asked.must)} among them" if asked.must else ""
         totals = self.totals_text(asked.count, asked.most_s, asked.most_J)
         return f"no {asked.count} of the {len(self)} icons{forced} stay within {totals}"
-
-
-def _held(psi: Array, n: int) -> Array:
-    return np.pad(psi, ((0, 0), (0, n - psi.shape[1])), mode="edge")
 
 
 def _shape_of(icon: Icon, rig: Rig) -> object:
