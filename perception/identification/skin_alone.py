@@ -62,12 +62,17 @@ def named_by_skin(skin_C: Array, rows: Sequence[int], crowd: People, seed: int) 
     return confuse(apart / noise_K(), lapse=crowd.lapse, seed=seed, samples=SAMPLES).probability
 
 
-def skin_alone(icons: Sequence[Icon], rig: Rig) -> Array:
-    """Pooled confusions (icons, icons) by skin temperature, each person on their own skin and contact."""
+def confused_by_skin(icons: Sequence[Icon], rig: Rig, crowd: People, seed: int) -> Array:
+    """Confusions (people, icons, icons) by skin temperature, each person on their own skin and contact."""
     from thermicon.circuit import simulate_many
     from thermicon.circuit.solver.simulate import duration_s
 
-    crowd, lasting = draw_people(PEOPLE), [duration_s(icon, rig) for icon in icons]
+    lasting = [duration_s(icon, rig) for icon in icons]
     end_s, rigs = run_end_s(lasting), crowd.rigs(rig)
     skin = simulate_many(icons, rigs, nominal=rig, end_s=end_s, rate_Hz=RATE_HZ, probes=("skin_C",))["skin_C"]
-    return normalised(named_by_skin(skin, [round(each * RATE_HZ) + 1 for each in lasting], crowd, 0).mean(axis=0))
+    return named_by_skin(skin, [round(each * RATE_HZ) + 1 for each in lasting], crowd, seed)
+
+
+def skin_alone(icons: Sequence[Icon], rig: Rig) -> Array:
+    """Pooled confusions (icons, icons) by skin temperature."""
+    return normalised(confused_by_skin(icons, rig, draw_people(PEOPLE), 0).mean(axis=0))
