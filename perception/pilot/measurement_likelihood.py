@@ -23,10 +23,9 @@ from ..experiments.laboratory import PEOPLE, SEED, Laboratory
 from ..experiments.measure import Condition, Setting, logs_of
 from ..experiments.tasks import DISCREPANCY, UNSTATED
 from ..kernels.parallel import in_order
-from ..observer.observer import Observer
 from .likelihood import features_of, ridge, smooth_features
 from .measurements_file import Measurements
-from .states import OFFSETS, Laboratories, LaboratoryPrior
+from .states import Laboratories, LaboratoryPrior
 
 RATING_SCALE = 0.7
 """SD (ln) by which another laboratory's scale of ratings may differ from the published one: a factor of 2; assumed."""
@@ -181,9 +180,7 @@ def measuring(
     prior: LaboratoryPrior, row: Array, setting: Setting, people: int = PEOPLE, seed: int = SEED
 ) -> Laboratory:
     """A laboratory by a row of `LaboratoryPrior.values`, which measures in a setting."""
-    named: dict[str, float] = dict(zip(prior.names, row.tolist(), strict=True))
-    constants = Observer.from_values(named, prior.draws.variable)
-    return setting.laboratory(constants, [named[offset] for offset in OFFSETS], people, seed)
+    return setting.laboratory(*prior.observer_of(row), people, seed)
 
 
 def predicted(

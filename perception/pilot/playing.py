@@ -79,7 +79,8 @@ class Stage:
         values, prior = self.prior.values(some), self.prior
 
         def one(k: int) -> Small:
-            observer, people = prior.observer_and_people(values[k], int(some.seed[k]), self.played.people)
+            observer, offsets = prior.observer_of(values[k])
+            people = draw_people(self.played.people, int(some.seed[k]), observer=observer, offsets=offsets)
             people = replace(people, contact_resistance=self.skins[0], outer_layer=self.skins[1])
             felt = respond(self.played, people, observer, detection=False)
             named = identify(felt, prior.form, people, observer, int(some.seed[k]), SAMPLES)[1].probability
