@@ -8,7 +8,6 @@ import hashlib
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
-from functools import lru_cache
 from io import StringIO
 from pathlib import Path
 from statistics import median
@@ -116,7 +115,6 @@ def load_constants(variable: Variable = "temperature") -> tuple[Constant, ...]:
     return tuple(row for row in read_rows(CONSTANTS, Constant) if row.variable == variable)
 
 
-@lru_cache(maxsize=1)
 def load_predictions() -> tuple[PredictedRow, ...]:
     """Predictions of every row, in the fit and out of it."""
     return tuple(read_rows(PREDICTIONS, PredictedRow))
