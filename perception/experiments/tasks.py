@@ -118,4 +118,4 @@ def psychometric(reported: Array, log_sizes: Array, shares: Array) -> Array:
     low, high = (np.take_along_axis(corrected, place, axis=1) for place in (above - 1, above))
     between = log_sizes[above - 1] + (shares - low) / (high - low) * (log_sizes[above] - log_sizes[above - 1])
     beyond = log_sizes[-1] + shares - corrected[:, -1:]
-    return np.where(reached == 0, log_sizes[0], np.where(reached < log_sizes.size, between, beyond))
+    return np.asarray(np.where(reached == 0, log_sizes[0], np.where(reached < log_sizes.size, between, beyond)))

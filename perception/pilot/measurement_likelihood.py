@@ -81,11 +81,6 @@ def person_covariance(measured: Measurements, between: Array) -> Array:
     return between + RATING_PEOPLE**2 * np.outer(rated, rated) + NUGGET * np.eye(len(rated))
 
 
-def log_errors(measured: Measurements, within: Array) -> Array:
-    """Standard errors (participants, conditions) of logs: as stated, else by trials, else `UNSTATED`."""
-    return _errors(measured.errors / measured.values, measured.trials, within)
-
-
 def log_likelihood(measured: Measurements, each: SimulatedMeasurements, groups: tuple[Group, ...] = ()) -> Array:
     """Ln likelihood (laboratories,) of all values, up to a constant."""
     shared, spread = shared_covariance(measured), person_covariance(measured, each.between)
@@ -94,7 +89,7 @@ def log_likelihood(measured: Measurements, each: SimulatedMeasurements, groups: 
     found = np.zeros(len(each.mean))
     for group in groups or groups_of(measured):
         used = group.conditions
-        error = _errors(group.stated, group.trials, each.within[:, used])
+        error = log_errors(group.stated, group.trials, each.within[:, used])
         own = spread[:, used[:, None], used] + np.square(error)[:, :, None] * np.eye(len(used))
         inverse = np.linalg.inv(own)
         off = group.mean - each.mean[:, used]
@@ -108,7 +103,8 @@ def log_likelihood(measured: Measurements, each: SimulatedMeasurements, groups: 
     return np.asarray(found - 0.5 * np.linalg.slogdet(inner)[1])
 
 
-def _errors(stated: Array, trials: Array, within: Array) -> Array:
+def log_errors(stated: Array, trials: Array, within: Array) -> Array:
+    """Standard errors (..., conditions) of logs: as stated, else by trials, else `UNSTATED`."""
     by_trials = within / np.sqrt(trials)
     return np.where(np.isnan(stated), np.where(np.isnan(by_trials), UNSTATED, by_trials), stated)
 

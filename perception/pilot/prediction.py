@@ -221,12 +221,12 @@ def compare_measurements(measured: Measurements, each: SimulatedMeasurements, *,
     """Compare measurements with the same ones simulated in the laboratories of a prediction."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, 32]))
     there, shared = measured.given, np.linalg.cholesky(shared_covariance(measured))
-    means = np.empty((EXPERIMENTS, len(measured.conditions)))
+    means, stated = np.empty((EXPERIMENTS, len(measured.conditions))), measured.errors / measured.values
     for row in range(EXPERIMENTS):
         k = row % len(each.mean)
         root = np.linalg.cholesky(person_covariance(measured, each.between[k]))
         people = rng.standard_normal(there.shape) @ root.T
-        errors = log_errors(measured, each.within[k]) * rng.standard_normal(there.shape)
+        errors = log_errors(stated, measured.trials, each.within[k]) * rng.standard_normal(there.shape)
         logs = each.mean[k] + people + errors + shared @ rng.standard_normal(len(root))
         means[row] = np.where(there, logs, 0.0).sum(axis=0) / there.sum(axis=0)
     seen = np.log(measured.means)

@@ -80,9 +80,7 @@ def heat(
     edges = [np.arange(count + 1) - 0.5 for count in (len(columns), len(rows))]
     norm = PowerNorm(bend, vmin=0.0, vmax=highest)
     drawn = axes.pcolormesh(*edges, values, cmap=light_map(), norm=norm, edgecolors="#e4e4e4", lw=0.4)
-    axes.set_aspect("equal")
-    axes.set_xlim(-0.5, len(columns) - 0.5)
-    axes.set_ylim(len(rows) - 0.5, -0.5)
+    axes.set(aspect="equal", xlim=(-0.5, len(columns) - 0.5), ylim=(len(rows) - 0.5, -0.5))
     size = 9.0 if len(rows) <= FEW else 8.0 if len(rows) <= MOST_NUMBERED else 6.0
     axes.set_xticks(np.arange(len(columns)), [short(name) for name in columns], fontsize=size)
     for label in axes.get_xticklabels():
