@@ -11,11 +11,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from thermicon.circuit import Rig
+from thermicon.icons import Icon
 
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised
@@ -31,9 +31,6 @@ from ..observer.observer import Observer
 from ..observer.people import People, draw_people
 from ..ranking.batches import EXPERIMENTS
 from .predicted import Predicted, interval_of, plausible_laboratories
-
-if TYPE_CHECKING:
-    from thermicon.icons import Icon
 
 Score = Callable[[Array], float]
 """One number from the confusions (people, icons, icons) of a crowd."""

@@ -10,9 +10,11 @@ import math
 from collections.abc import Sequence
 from itertools import combinations
 from statistics import NormalDist
-from typing import TYPE_CHECKING
 
 import numpy as np
+
+from thermicon.circuit import Rig
+from thermicon.icons import Icon
 
 from ..arrays import Array
 from ..observer.channels import Channel
@@ -20,10 +22,6 @@ from ..observer.observer import load_thresholds
 from ..observer.people import People, draw_people
 from .confusion import confuse, normalised
 from .population import RATE_HZ, run_end_s
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.icons import Icon
 
 SAMPLES, PEOPLE = 1024, 50
 """Presentations of an icon to a person: with 200 people a pooled share is known to 0.001; and people, if not said."""

@@ -8,10 +8,11 @@ from dataclasses import dataclass, fields
 from functools import lru_cache, partial
 from statistics import NormalDist
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
+from thermicon.circuit import Rig
 from thermicon.circuit.records import Record, shipped_records
 from thermicon.icons.model.arguments import checked
 
@@ -19,9 +20,6 @@ from ..arrays import Array, own_arrays
 from .channels import CHANNELS, Channel
 from .constants import Both, record_of
 from .observer import Observer, load_thresholds, observer_records
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
 
 
 @dataclass(frozen=True, slots=True)

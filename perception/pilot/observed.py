@@ -6,12 +6,13 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar, Unpack
+from typing import Any, Generic, TypeVar, Unpack
 
 import numpy as np
 
 from thermicon.circuit.program import own_version
 from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons import IconSet
 from thermicon.icons.drawn import Drawn, Tabled
 from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import InputError, checked
@@ -27,9 +28,6 @@ from .playing import Confusions, Stage, laboratories_for, stage
 from .prediction import ChangedConstant, ChangedPrediction, Fit, MeasurementFit, SetPrediction, changed
 from .states import LaboratoryPrior
 from .trials import Trials
-
-if TYPE_CHECKING:
-    from thermicon.icons import IconSet
 
 DRAWS, LEAST_DRAWS = 1000, 20
 D = TypeVar("D", Namings, MeasuredValues)

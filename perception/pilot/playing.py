@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+from thermicon.circuit import Rig
+from thermicon.icons import IconSet
 
 from ..arrays import Array
 from ..identification.depths import rungs
@@ -17,10 +19,6 @@ from ..identification.population import RATE_HZ, ReceptorTemperatures, identify,
 from ..kernels.parallel import in_order
 from ..observer.people import draw_people
 from .states import Laboratories, LaboratoryPrior
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.icons import IconSet
 
 Small = NDArray[np.float32]
 SAMPLES = 256

@@ -15,11 +15,12 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import product
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import Any, Unpack
 
 import numpy as np
 
 from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons import Icon
 from thermicon.icons.drawn import Drawn, Tabled
 from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import checked
@@ -35,10 +36,6 @@ from ..observer.observer_model import Crowd, CrowdWords, ObserverModel
 from ..observer.people import People, people_records
 from .assumptions import explained, explained_together, scores_of
 from .ranking import with_changes
-
-if TYPE_CHECKING:
-    from thermicon.icons import Icon
-
 
 RATE_HZ = 12.5
 """As draws are judged for the intervals of a new laboratory."""

@@ -5,9 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+
+from thermicon.circuit import Rig, Trace
+from thermicon.circuit.solver.inverse import baseline_C
+from thermicon.circuit.solver.simulate import duration_s, simulate_all
+from thermicon.circuit.solver.steady import steady_state
+from thermicon.icons import Icon
 
 from ..arrays import Array, held
 from ..criteria import FELT_FROM
@@ -21,10 +26,6 @@ from ..sensation.received import received, uniform_clock
 from .goal import SAFETY, Goal
 from .max_min_subset import Totals
 from .request import ChoiceError, Selection, check_selection, too_few
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig, Trace
-    from thermicon.icons import Icon
 
 POOL_HZ = 25.0
 """Rows a second of a pool that is only tried out."""
@@ -56,8 +57,6 @@ class Pool:
         rate_Hz: float = POOL_HZ,
     ) -> Pool:
         """Play icons on the rig until `end_s`, by default until the longest of them has faded, and feel them."""
-        from thermicon.circuit.solver.simulate import duration_s, simulate_all
-
         durations = np.array([duration_s(icon, rig) for icon in icons])
         end = run_end_s(durations.tolist(), rate_Hz) if end_s is None else end_s
         padded = [*icons, *[icons[-1]] * (BLOCK - len(icons))]
@@ -185,9 +184,6 @@ class Pool:
 
 def _shape_of(icon: Icon, rig: Rig) -> object:
     """The common property of icons that play alike: control and corner points."""
-    from thermicon.circuit.solver.inverse import baseline_C
-    from thermicon.circuit.solver.steady import steady_state
-
     base = baseline_C(icon, rig)
     start = steady_state(rig, "display", base)[0] if icon.context.control == "current" else base
     return icon.context.control, base, icon.corners(start)
