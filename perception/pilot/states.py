@@ -44,6 +44,10 @@ class Laboratories:
     def __len__(self) -> int:
         return len(self.place)
 
+    def of(self, which: NDArray[np.int64]) -> Laboratories:
+        """Some of them, by number."""
+        return Laboratories(self.place[which], self.seed[which])
+
 
 class LaboratoryPrior:
     """The prior of laboratories: draws of the posterior, intervals of memory, and the spread of offsets.
