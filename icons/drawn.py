@@ -35,13 +35,19 @@ class Drawn:
 
 
 class Tabled:
-    """A result of which `to_frame` gives a table."""
+    """A result of which `to_frame` gives a table, by default of its `rows`."""
 
     __slots__ = ()
 
+    def rows(self) -> list[dict[str, Any]]:
+        """The rows of the table."""
+        raise NotImplementedError
+
     def to_frame(self) -> pd.DataFrame:
         """The result as a table."""
-        raise NotImplementedError
+        import pandas as pd
+
+        return pd.DataFrame(self.rows())
 
     def to_csv(self, path: str | Path) -> None:
         """Write the table as a CSV file; an existing file is replaced."""

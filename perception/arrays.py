@@ -14,6 +14,11 @@ def own_arrays(holder: object, *names: str) -> None:
         object.__setattr__(holder, name, own)
 
 
+def held(courses: Array, rows: int) -> Array:
+    """Courses (..., n_time) of so many rows, the last of them held."""
+    return np.pad(courses, [(0, 0)] * (courses.ndim - 1) + [(0, rows - courses.shape[-1])], "edge")
+
+
 def as_rows(values: ArrayLike) -> tuple[Array, tuple[int, ...]]:
     """(rows, n_time) read-only view of a contiguous float64 array, and the shape it came in.
 

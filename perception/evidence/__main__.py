@@ -11,13 +11,14 @@ from functools import partial
 from pathlib import Path
 
 from thermicon.circuit.cores import cores
-from thermicon.circuit.records import RecordError
+from thermicon.circuit.records import RecordError, dump_records
 from thermicon.icons.atomic import complete_or_absent
 
 from ..observer.channels import VARIABLES
 from ..observer.draws_file import shipped_file, to_text
+from ..observer.observer import DATA
 from ..observer.priors import WITHIN_95
-from .calibrate import write_observer
+from .calibrate import COMMENT, calibrate
 from .chains import CHAINS, require_extra
 from .posterior import LeftOut, Maximum, Posterior, leave_each_out, maximise
 from .results import CONSTANTS, PREDICTIONS, Constant, PredictedRow, write_rows
@@ -36,7 +37,7 @@ def main(words: Sequence[str] | None = None) -> int:
         require_extra()
         return sample_posterior(asked)
     if asked.what == "observer":
-        write_observer()
+        (DATA / "observer.toml").write_text(dump_records(calibrate(), comment=COMMENT), encoding="utf-8")
     elif asked.shipped:
         found = [at_shipped(Posterior(variable)) for variable in VARIABLES]
         write_rows(predictions_of(found, leave_each_out(found[0], tell)), PREDICTIONS)

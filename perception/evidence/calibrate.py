@@ -7,7 +7,7 @@ import math
 from dataclasses import replace
 
 from thermicon.circuit import Rig
-from thermicon.circuit.records import Record, RecordTable, dump_records
+from thermicon.circuit.records import Record, RecordTable
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import steady_state
 
@@ -16,7 +16,7 @@ from ..identification.task import memory_noise, memory_record
 from ..observer.channels import CHANNELS, VARIABLES, Channel, Variable, receptor_column, source_of
 from ..observer.constants import names_of, quantity_of, record_of
 from ..observer.draws import PosteriorDraws
-from ..observer.observer import DATA, Observer, load_thresholds
+from ..observer.observer import Observer, load_thresholds
 from .results import UNMOVED_SD, Constant, load_constants
 from .rows import load_evidence
 
@@ -132,8 +132,3 @@ def _neutral_flux(known: RecordTable, channel: Channel) -> Record:
         confidence="low",
         use="calibrate",
     )
-
-
-def write_observer() -> None:
-    """Write the parameter file of the package."""
-    (DATA / "observer.toml").write_text(dump_records(calibrate(), comment=COMMENT), encoding="utf-8")

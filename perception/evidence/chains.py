@@ -70,11 +70,6 @@ class Chain:
     def __len__(self) -> int:
         return int(self.white.shape[0])
 
-    @property
-    def last(self) -> Chain:
-        """A chain of no steps that goes on from the last one of this."""
-        return Chain(self.white[-1:], self.log_posterior[-1:], self.random)
-
 
 def begin(size: int, seed: int, number: int) -> Chain:
     """A chain of no steps that starts at a draw from the normal approximation."""
@@ -223,7 +218,8 @@ def learn(
         chains = tuple(chain for chain, _ in visited)
         for _, seen in visited:
             points = points.joined(seen)
-    return fitted(posterior, reference, points, WIDE), reference, points, tuple(chain.last for chain in chains)
+    ends = tuple(Chain(chain.white[-1:], chain.log_posterior[-1:], chain.random) for chain in chains)
+    return fitted(posterior, reference, points, WIDE), reference, points, ends
 
 
 def _visited(part: tuple[Chain, Posterior, Reference, Surrogate]) -> tuple[Chain, Points]:

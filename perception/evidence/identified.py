@@ -11,11 +11,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from thermicon.circuit import Rig
+from thermicon.icons import Icon
 
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised
@@ -24,7 +24,7 @@ from ..identification.laboratory_draws import EVERY, people_for_intervals
 from ..identification.laboratory_draws import SAMPLES as FEW_SAMPLES
 from ..identification.measures import information_bits, plugin_bits, proportion_correct
 from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond, run_end_s
-from ..identification.skin_alone import named_by_skin
+from ..identification.skin_alone import confused_by_skin
 from ..kernels.parallel import in_order
 from ..observer.channels import CHANNELS, USUAL_MEMORY, Variable, receptor_column
 from ..observer.observer import Observer
@@ -32,10 +32,6 @@ from ..observer.people import People, draw_people
 from ..ranking.batches import EXPERIMENTS
 from .predicted import Predicted, interval_of, plausible_laboratories
 
-if TYPE_CHECKING:
-    from thermicon.icons import Icon
-
-SKIN = "skin_C"
 Score = Callable[[Array], float]
 """One number from the confusions (people, icons, icons) of a crowd."""
 
@@ -118,15 +114,11 @@ class ShownSet:
 
 def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> ShownSet:
     """Icons to play to virtual people, each on their own skin and contact, as `rank` does."""
-    from thermicon.circuit import simulate_many
     from thermicon.circuit.solver.simulate import duration_s
 
     members, crowd = tuple(icons), draw_people(people, seed)
-    durations = [duration_s(icon, rig) for icon in members]
-    end = run_end_s(durations)
-    batch = simulate_many(members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, probes=[SKIN])
-    rows = [round(each * RATE_HZ) + 1 for each in durations]
-    return ShownSet(members, rig, end, crowd, seed, named_by_skin(batch[SKIN], rows, crowd, seed))
+    end = run_end_s(duration_s(icon, rig) for icon in members)
+    return ShownSet(members, rig, end, crowd, seed, confused_by_skin(members, rig, crowd, seed))
 
 
 def correct(probability: Array) -> float:

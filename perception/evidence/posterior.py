@@ -30,7 +30,7 @@ BoolArray = NDArray[np.bool_]
 FARTHEST = 30.0
 """A row that is missed by more standard deviations counts as this many, so that a wild step is not fatal."""
 LIMITS = names_of(Observer, "limit_C", "softness_K")
-"""Constants that heat flow does not have; they are fixed where they do nothing."""
+"""Constants of the limits, which heat flow does not have; they are fixed where they do nothing."""
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from ..arrays import Array
 from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import APPROXIMATE, DrawsHeader
 from ..observer.priors import LABORATORIES, load_priors
+from ..pilot.laboratory_file import off_centre
 from .chains import CHAINS, ESS, R_HAT, Chain, Diagnostics, Reference, Run, diagnose, extend, learn
 from .posterior import Maximum, Posterior, maximise
 from .results import inputs_digest, load_constants
@@ -156,10 +157,4 @@ def in_the_middle(posterior: Posterior, vectors: Array) -> int:
     """Number of the vector nearest to the medians of constants and of predicted rows together, in SDs of the draws."""
     predicted = np.array([[found[row.key] for row in posterior.rows] for found in map(posterior.predictions, vectors)])
     constants = [k for k, prior in enumerate(posterior.priors.each) if prior.mechanism != "laboratories"]
-    return int((_off_centre(vectors[:, constants]) + _off_centre(predicted)).argmin())
-
-
-def _off_centre(each: Array) -> Array:
-    """Mean square (draws,) of how many SDs a draw lies from the median of each column."""
-    spread = np.where(each.std(axis=0) > 0.0, each.std(axis=0), 1.0)
-    return np.asarray(np.square((each - np.median(each, axis=0)) / spread).mean(axis=1))
+    return int((off_centre(vectors[:, constants]) + off_centre(predicted)).argmin())

@@ -14,9 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..observer.constants import names_of
-from ..observer.observer import Observer
 from ..observer.priors import Priors
+from .posterior import LIMITS
 
 RIDGE = 0.01
 """Weight of keeping coefficients small, as a share of the number of points."""
@@ -115,7 +114,6 @@ def fit_surrogate(
     return Surrogate(fitted[:, 0], fitted[:, 1 : 1 + size], curvature, middle, factor, features, weights, *reach)
 
 
-NAMES = names_of(Observer, "limit_C", "softness_K")
 COLD_C, WARM_C = (30.0, 31.0, 31.8, 32.0), (31.0, 32.0, 32.4, 34.0)
 """Temperatures of skin at rest in the experiments of the evidence, and near them."""
 COUNT = len(COLD_C) + len(WARM_C)
@@ -132,9 +130,9 @@ class LimitFeatures:
     @classmethod
     def of(cls, priors: Priors) -> LimitFeatures | None:
         """The features of a posterior; None where its limits are not inferred."""
-        if any(name not in priors.names for name in NAMES):
+        if any(name not in priors.names for name in LIMITS):
             return None
-        cold, warm, softness = chosen = [priors.names.index(name) for name in NAMES]
+        cold, warm, softness = chosen = [priors.names.index(name) for name in LIMITS]
         return cls((cold, warm, softness), priors.middle[chosen], priors.sd[chosen])
 
     def at(self, vectors: Array) -> Array:

@@ -22,8 +22,6 @@ from .targets import PAIRED, Published, Target, TargetRow, combined, load_target
 from .verdicts import Verdict, judge_row
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from ..kernels.parallel import Progress
     from .shown import ShownEvidence
 
@@ -111,14 +109,12 @@ class ValidationReport(Tabled):
         lines = [line for s in self.sections for line in s.lines if not line.published.fitted]
         return {who: sum(line.nearer_to_published == who for line in lines) for who in ("model", "baseline", "both")}
 
-    def to_frame(self) -> pd.DataFrame:
+    def rows(self) -> list[dict[str, Any]]:
         """Return one row per published result and variable that receptors may respond to.
 
         `published` is the number in `unit`, where it is of the same quantity; `low` to `high` is the 95 % interval.
         """
-        import pandas as pd
-
-        return pd.DataFrame(
+        return [
             {"target": f"{section.target.number} {section.target.title}", "row": line.row.label,
              "variable": one.predicted.variable, "unit": line.row.unit, "fitted": line.published.fitted,
              "published": line.published.value if line.published.unit == line.row.unit else None,
@@ -126,7 +122,7 @@ class ValidationReport(Tabled):
              "nearer": line.nearer_to_published, "verdict": one.verdict.word, "held_in_draws": one.held,
              "said": one.verdict.text, "suspected": section.target.mechanism}
             for section in self.sections for line in section.lines for one in line.judged
-        )  # fmt: skip
+        ]  # fmt: skip
 
     def to_dict(self) -> dict[str, Any]:
         """Return every number, as `thermicon validate --json` writes it."""

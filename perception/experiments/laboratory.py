@@ -6,7 +6,7 @@ smoothly with the constants, as a search for a maximum needs.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import Self
 
@@ -44,6 +44,8 @@ Corner = tuple[float, float]
 """A corner of a stimulus: time in s and change of the display from the baseline in K."""
 Samples = NDArray[np.int64]
 """Numbers of the samples of a drive that are enough to count passages."""
+Receptor = tuple[Array, float, float]
+"""Response of a receptor to a unit ramp, its rest at 0 °C, and the change of that per K."""
 
 
 @lru_cache(maxsize=4)
@@ -97,6 +99,7 @@ class Laboratory:
     offsets: Mapping[str, Both[float]]
     people: People
     seed: int = SEED
+    _receptors: dict[tuple[str, Channel], Receptor] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @classmethod
     def of(
@@ -114,12 +117,7 @@ class Laboratory:
             lanes[channel] = own.ravel() ** self.constants.p, np.repeat(self.people.criterion(channel), gains.size)
         return lanes
 
-    @cached_property
-    def _receptors(self) -> dict[tuple[str, Channel], tuple[Array, float, float]]:
-        """Receptor responses of a site to a unit ramp, their rest at 0 °C, and its change per K."""
-        return {}
-
-    def _receptor(self, site_rig: str, channel: Channel, rows: int) -> tuple[Array, float, float]:
+    def _receptor(self, site_rig: str, channel: Channel, rows: int) -> Receptor:
         known = self._receptors.get((site_rig, channel))
         if known is None or known[0].size < rows:
             constants, rig, row = self.constants, load_rig(site_rig), CHANNELS.index(channel)

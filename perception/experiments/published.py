@@ -5,6 +5,7 @@ Numbers on a log scale are logarithms.
 
 import math
 from collections.abc import Callable, Iterator
+from itertools import chain
 
 import numpy as np
 
@@ -34,10 +35,7 @@ LIMIT_K = 12.0
 
 def predict(laboratory: Laboratory) -> Predictions:
     """Predictions of all conditioning experiments."""
-    predictions: Predictions = {}
-    for experiment in EXPERIMENTS:
-        predictions.update(experiment(laboratory))
-    return predictions
+    return dict(chain.from_iterable(experiment(laboratory) for experiment in EXPERIMENTS))
 
 
 def reaction_times(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
@@ -151,9 +149,9 @@ PREPULSE_K_PER_S, HELD_S, FOREPERIOD_S, COOLED_K = 2.5, 0.75, 0.25, 14.0
 def after_warmth(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E5: cooling at 1 K/s after a warm pulse; press at the first change, then say which it was."""
     constants = laboratory.constants
-    gain = laboratory.gain("cold", TWO_STRIPS_CM2, "E4", "forearm", MEAN_AGE_YEARS["E5"])
-    warm_gain = laboratory.gain("warm", TWO_STRIPS_CM2, "E4", "forearm", MEAN_AGE_YEARS["E5"])
-    lowest = 0.0
+    at = TWO_STRIPS_CM2, "E4", "forearm", MEAN_AGE_YEARS["E5"]
+    gain, warm_gain = (laboratory.gain(channel, *at) for channel in CHANNELS)
+    caution, samples, lowest = constants.caution_after_pulse, samples_of(((COOLED_K, -COOLED_K),), COOLED_K), 0.0
     for level, peak in enumerate(PEAKS_C, start=1):
         rise_s = (peak - 32.0) / PREPULSE_K_PER_S
         start_s = round((2.0 * rise_s + HELD_S + FOREPERIOD_S) / DT_S) * DT_S
@@ -161,8 +159,6 @@ def after_warmth(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
         corners = [*pulse, (start_s + COOLED_K, -COOLED_K)]
         drive = laboratory.drive("forearm", "cold", 32.0, corners, start_s + COOLED_K)
         cooled = np.ascontiguousarray(drive[round(start_s / DT_S) :])
-        caution = constants.caution_after_pulse
-        samples = samples_of(((COOLED_K, -COOLED_K),), COOLED_K)
         answers = laboratory.answers_s(cooled, samples, "cold", gain, site="forearm", caution=caution)
         logs = np.log(np.minimum(answers, COOLED_K + 1.0))
         mean = float(logs.mean())

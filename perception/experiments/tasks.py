@@ -20,6 +20,10 @@ UNSTATED = 0.10
 """Error of a threshold whose error is not stated, as a share; assumed."""
 HALVES = (0.16, 0.5, 0.84)
 """Shares one SD below, at and above the middle of a cumulative normal."""
+GUESSED = 0.999
+"""Share of the reports at the smallest size that counts as guessed; less than all, so that none is divided by 0."""
+LEAST_RISE = 1e-9
+"""Added from size to size, so that no share stands at two sizes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,10 +99,23 @@ class Stimulated:
 
 def yes_no_logs(laboratory: Laboratory, ramps: Sequence[DisplayRamp], gain: float) -> tuple[Array, Array]:
     """Logs (people,) of the size that is reported in half of the trials, and of the SD of the function, guesses out."""
-    from ..kernels.crossing import psychometric
-
     reported = np.stack([Stimulated.of(laboratory, ramp).reported(gain) for ramp in ramps], axis=1)
-    logs = np.empty((reported.shape[0], len(HALVES)))
-    psychometric(reported, np.log([ramp.size_K for ramp in ramps]), np.array(HALVES), logs)
+    logs = psychometric(reported, np.log([ramp.size_K for ramp in ramps]), np.array(HALVES))
     sizes = np.exp(logs)
     return logs[:, 1], np.log(np.maximum(0.5 * (sizes[:, 2] - sizes[:, 0]), 1e-3))
+
+
+def psychometric(reported: Array, log_sizes: Array, shares: Array) -> Array:
+    """Logs (people, shares) of the sizes at which corrected reports (people, sizes) reach these shares, linear between.
+
+    A share that is not reached by the largest size lies beyond it, as far as the rest is missing.
+    """
+    guesses = GUESSED * reported[:, :1]
+    corrected = np.maximum.accumulate((reported - guesses) / (1.0 - guesses), axis=1)
+    corrected += LEAST_RISE * np.arange(log_sizes.size)
+    reached = np.stack([np.searchsorted(own, shares) for own in corrected])
+    above = reached.clip(1, log_sizes.size - 1)
+    low, high = (np.take_along_axis(corrected, place, axis=1) for place in (above - 1, above))
+    between = log_sizes[above - 1] + (shares - low) / (high - low) * (log_sizes[above] - log_sizes[above - 1])
+    beyond = log_sizes[-1] + shares - corrected[:, -1:]
+    return np.asarray(np.where(reached == 0, log_sizes[0], np.where(reached < log_sizes.size, between, beyond)))

@@ -8,9 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+
+from thermicon.circuit import Rig
+from thermicon.icons import Icon
 
 from ..arrays import Array
 from ..observer.channels import MemoryForm
@@ -20,10 +23,6 @@ from .depths import rungs
 from .laboratory_draws import EVERY, MANY, LaboratoryDraws, laboratory_draws, people_for_intervals, scored
 from .population import RATE_HZ, ReceptorTemperatures
 from .task import USUAL, Task
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.icons import Icon
 
 DRAWS = 128
 """The ends of the interval scatter by one to two points of per cent correct from seed to seed."""

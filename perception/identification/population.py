@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -62,8 +62,10 @@ class ReceptorTemperatures:
         tracking: str | None, probes: tuple[str, str] = PROBES,
     ) -> ReceptorTemperatures:  # fmt: skip
         """Simulate icons on the skins of people until `end_s`, with currents that are designed on `rig`."""
+        from thermicon.circuit import simulate_many
+
         rigs = crowd.rigs(rig, [observer.depths_m(each) for each in crowd.corneum_m(rig).tolist()])
-        batch = _played(icons, rigs, rig, end_s, rate_Hz, tracking, probes)
+        batch = simulate_many(icons, rigs, nominal=rig, end_s=end_s, rate_Hz=rate_Hz, tracking=tracking, probes=probes)
         return cls._of([batch], (), crowd, rig, icons)
 
     @classmethod
@@ -72,9 +74,12 @@ class ReceptorTemperatures:
         rate_Hz: float, tracking: str | None, probes: tuple[str, str] = PROBES, designed_on: Rig | None = None,
     ) -> ReceptorTemperatures:  # fmt: skip
         """The same for observers whose receptors lie between these depths; a rig that places its own keeps them."""
-        nominal, rungs_m = designed_on or rig, depths_m[:1] if rig.skin.own else depths_m
+        from thermicon.circuit import simulate_many
+
+        rungs_m = depths_m[:1] if rig.skin.own else depths_m
         skins = [crowd.rigs(rig, [each] * len(crowd)) for each in rungs_m]
-        each = [_played(icons, rigs, nominal, end_s, rate_Hz, tracking, probes) for rigs in skins]
+        how: dict[str, Any] = {"rate_Hz": rate_Hz, "tracking": tracking, "probes": probes}
+        each = [simulate_many(icons, rigs, nominal=designed_on or rig, end_s=end_s, **how) for rigs in skins]
         return cls._of(each, () if rig.skin.own else rungs_m, crowd, rig, icons)
 
     @classmethod
@@ -105,26 +110,12 @@ class ReceptorTemperatures:
         return replace(self, rungs_C=(cold, warm), corneum_m=self.corneum_m[:people])
 
 
-def _played(
-    icons: Sequence[Icon], rigs: Sequence[Rig], nominal: Rig, end_s: float, rate_Hz: float, tracking: str | None,
-    probes: tuple[str, str],
-) -> Batch:  # fmt: skip
-    from thermicon.circuit import simulate_many
-
-    return simulate_many(icons, rigs, nominal=nominal, end_s=end_s, rate_Hz=rate_Hz, tracking=tracking, probes=probes)
-
-
 @dataclass(frozen=True, slots=True)
 class PopulationResponse:
     """Episodes of every person and icon, and detection probabilities (people, icons); None where not asked for."""
 
     episodes: Episodes
     detection: Detection | None
-
-    def of(self, icons: Sequence[int]) -> PopulationResponse:
-        """Some of the icons, without their detection."""
-        places = list(icons)
-        return PopulationResponse(Episodes(self.episodes.features[:, places], self.episodes.counts[:, places]), None)
 
     @property
     def detected(self) -> Detection:

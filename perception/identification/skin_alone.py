@@ -10,9 +10,11 @@ import math
 from collections.abc import Sequence
 from itertools import combinations
 from statistics import NormalDist
-from typing import TYPE_CHECKING
 
 import numpy as np
+
+from thermicon.circuit import Rig
+from thermicon.icons import Icon
 
 from ..arrays import Array
 from ..observer.channels import Channel
@@ -20,10 +22,6 @@ from ..observer.observer import load_thresholds
 from ..observer.people import People, draw_people
 from .confusion import confuse, normalised
 from .population import RATE_HZ, run_end_s
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.icons import Icon
 
 SAMPLES, PEOPLE = 1024, 50
 """Presentations of an icon to a person: with 200 people a pooled share is known to 0.001; and people, if not said."""
@@ -62,12 +60,17 @@ def named_by_skin(skin_C: Array, rows: Sequence[int], crowd: People, seed: int) 
     return confuse(apart / noise_K(), lapse=crowd.lapse, seed=seed, samples=SAMPLES).probability
 
 
-def skin_alone(icons: Sequence[Icon], rig: Rig) -> Array:
-    """Pooled confusions (icons, icons) by skin temperature, each person on their own skin and contact."""
+def confused_by_skin(icons: Sequence[Icon], rig: Rig, crowd: People, seed: int) -> Array:
+    """Confusions (people, icons, icons) by skin temperature, each person on their own skin and contact."""
     from thermicon.circuit import simulate_many
     from thermicon.circuit.solver.simulate import duration_s
 
-    crowd, lasting = draw_people(PEOPLE), [duration_s(icon, rig) for icon in icons]
+    lasting = [duration_s(icon, rig) for icon in icons]
     end_s, rigs = run_end_s(lasting), crowd.rigs(rig)
     skin = simulate_many(icons, rigs, nominal=rig, end_s=end_s, rate_Hz=RATE_HZ, probes=("skin_C",))["skin_C"]
-    return normalised(named_by_skin(skin, [round(each * RATE_HZ) + 1 for each in lasting], crowd, 0).mean(axis=0))
+    return named_by_skin(skin, [round(each * RATE_HZ) + 1 for each in lasting], crowd, seed)
+
+
+def skin_alone(icons: Sequence[Icon], rig: Rig) -> Array:
+    """Pooled confusions (icons, icons) by skin temperature."""
+    return normalised(confused_by_skin(icons, rig, draw_people(PEOPLE), 0).mean(axis=0))

@@ -20,7 +20,7 @@ from ..observer.channels import source_of
 from ..observer.constants import QUANTITIES
 from ..observer.mechanisms.memory import NOISE
 from ..observer.observer import MEMORY_FORMS, MemoryForm, Observer
-from ..sensation.bench import Bench, Stimulus, ramp
+from ..sensation.bench import Bench, ramp
 from ..sensation.percept import perceive_many
 from .episodes import Episodes, episode_distances
 
@@ -87,16 +87,12 @@ def _noise_of(episodes: Episodes, proportion: float, observer: Observer) -> floa
 
 def _felt(known: RecordTable, observer: Observer) -> Iterator[tuple[Array, Array, float]]:
     """Cold and warm sensations (2, n_time) of every rate and span of the task, and the step of their clock in s."""
-    fraction = known.one("rate Weber fraction").central
+    bench, fraction = Bench(Rig.load(RIG)), known.one("rate Weber fraction").central
     rates, spans = known.one("rate of the rate task").interval, known.one("span of the rate task").interval
     for rate, span in itertools.product(rates, spans):
-        played = _pair(span, rate, rate * (1.0 + fraction))
+        both = [ramp("cold", span, own) for own in (rate, rate * (1.0 + fraction))]
+        played = bench.play(both, round(span / rate + TAIL_S, 2))
         yield *perceive_many(*played.received(observer), played.dt_s, observer), played.dt_s
-
-
-def _pair(span_K: float, slow: float, fast: float) -> Stimulus:
-    end = round(span_K / slow + TAIL_S, 2)
-    return Bench(Rig.load(RIG)).play([ramp("cold", span_K, rate) for rate in (slow, fast)], end)
 
 
 LONGEST_GAP_S = 600.0

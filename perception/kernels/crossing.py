@@ -6,8 +6,7 @@ that has not been passed yet is passed, per unit of time, at Rice's rate over th
     (φ(z) + z·Φ(z))/τ · φ(g)/Φ(g),   z = r·τ,   g = c − ψ
 
 A drive that is g times as large has the sensation a·ln(1 + g^p·(e^(ψ/a) − 1)). Rankings read reports of it (`reports`),
-experiments the times at which shares of trials have passed, and how often the noise of another channel passes first;
-psychometric functions are read here too: sizes at which each person reports given shares, guesses taken out.
+experiments the times at which shares of trials have passed, and how often the noise of another channel passes first.
 """
 
 import math
@@ -20,10 +19,6 @@ from thermicon.circuit.vector_math import log1p
 
 SQRT_HALF = math.sqrt(0.5)
 INV_SQRT_2PI = 1.0 / math.sqrt(2.0 * math.pi)
-GUESSED = 0.999
-"""Share of the reports at the smallest size that counts as guessed; less than all, so that none is divided by 0."""
-LEAST_RISE = 1e-9
-"""Added from size to size, so that no share stands at two sizes."""
 
 
 def _cumulative(x: float) -> float:
@@ -181,30 +176,6 @@ def _rise_table() -> Any:
 MILLS, RISE = _mills_table(), _rise_table()
 
 
-def _psychometric(reported: Any, log_sizes: Any, shares: Any, logs: Any) -> None:
-    """Logs (people, shares) of the sizes at which corrected reports (people, sizes) reach these shares, linear between.
-
-    A share that is not reached by the largest size lies beyond it, as far as the rest is missing.
-    """
-    people, sizes = reported.shape
-    for person in range(people):
-        guesses = GUESSED * reported[person, 0]
-        for k in range(shares.size):
-            share = shares[k]
-            below, reached, place = 0.0, False, log_sizes[0]
-            highest = -1.0
-            for j in range(sizes):
-                highest = max(highest, (reported[person, j] - guesses) / (1.0 - guesses))
-                corrected = highest + LEAST_RISE * j
-                if not reached and corrected >= share:
-                    reached = True
-                    if j > 0:
-                        part = (share - below) / (corrected - below)
-                        place = log_sizes[j - 1] + part * (log_sizes[j] - log_sizes[j - 1])
-                below = corrected
-            logs[person, k] = place if reached else log_sizes[sizes - 1] + share - below
-
-
 _compile: Any = kernel(nogil=True)
 _vector: Any = kernel(nogil=True, error_model="numpy", fastmath={"reassoc", "nsz", "contract", "arcp"})
 cumulative: Any = _compile(_cumulative)
@@ -213,4 +184,3 @@ first_below: Any = _compile(_first_below_index)
 survive: Any = _vector(_survive)
 passage: Any = _vector(_passage)
 outrun: Any = _vector(_outrun)
-psychometric: Any = _compile(_psychometric)

@@ -12,7 +12,6 @@ Integration and adaptation are exact for q that is linear between samples.
 """
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -113,7 +112,5 @@ def _nearest(nearness: Any, projected: Any, counts: Any) -> None:
                 counts[i, best[s]] += 1.0
 
 
-Loop = Callable[..., None]
-_vector: Any = kernel(nogil=True, fastmath={"reassoc", "nsz"})
-sensation: Loop = vectorised(_sensation)
-nearest: Loop = _vector(_nearest)
+sensation: Any = vectorised(_sensation)
+nearest: Any = kernel(nogil=True, fastmath={"reassoc", "nsz"})(_nearest)

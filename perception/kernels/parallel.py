@@ -32,17 +32,15 @@ def over_rows(work: Callable[[slice], None], rows: int, size: int) -> None:
         pool.shutdown(wait=False)  # who interrupts waits for no slice
 
 
-def in_order(
-    work: Callable[[Item], Result], each: Sequence[Item], workers: int | None = None, most: int = MOST_THREADS
-) -> Iterator[Result]:
-    """Results of `work` in the order of `each`, by `workers` threads (None: the cores there are, up to `most`).
+def in_order(work: Callable[[Item], Result], each: Sequence[Item], workers: int | None = None) -> Iterator[Result]:
+    """Results of `work` in the order of `each`, by `workers` threads (None: the cores there are, up to eight).
 
     The kernels let go of the interpreter lock. No more than two results a worker wait to be taken.
 
     >>> list(in_order(abs, [-2, 1]))
     [2, 1]
     """
-    allowed = min(cores(), most) if workers is None else workers
+    allowed = min(cores(), MOST_THREADS) if workers is None else workers
     threads = max(1, min(allowed, len(each)))
 
     def one(asked: Item) -> Result:

@@ -136,10 +136,8 @@ def values_of(held: Any) -> Iterator[tuple[str, Range, Any]]:
     for each in constants_of(held):
         own, names = getattr(held, each.name), each.metadata["names"]
         if own is not None:
-            yield from (
-                (name, each.metadata["within"], v)
-                for name, v in zip(names, own if len(names) > 1 else (own,), strict=True)
-            )
+            for name, value in zip(names, own if len(names) > 1 else (own,), strict=True):
+                yield name, each.metadata["within"], value
 
 
 BETWEEN_LABORATORIES = "sensitivity between laboratories"

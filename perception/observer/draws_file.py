@@ -77,23 +77,18 @@ class DrawsHeader:
         return f"{reached}R-hat up to {self.r_hat:.3f}, ESS from {self.ess:.0f}"
 
 
-LABELS: Mapping[str, str] = {
-    "evidence": "evidence",
-    "priors": "priors",
-    "program": "program",
+SAID: Mapping[str, str] = {
     "variable": "sensory variable",
-    "left_out": "left out",
-    "sampler": "sampler",
-    "seed": "seed",
     "likelihoods": "likelihoods computed",
     "r_hat": "largest R-hat",
     "ess": "least bulk ESS",
-    "converged": "converged",
     "offsets": "offsets of laboratories",
 }
-"""Names of the header's lines by field; `inputs` ends the first line."""
-OF_LABORATORY: Mapping[str, str] = {"resampled": "resampled", "rig": "rig"}
-"""Further lines of one laboratory's draws."""
+"""Fields that the header calls otherwise."""
+OF_LABORATORY = ("resampled", "rig")
+"""Fields that only one laboratory's draws have."""
+LABELS = {own.name: SAID.get(own.name, own.name.replace("_", " ")) for own in fields(DrawsHeader)[1:]}
+"""Names of the header's lines by field; `inputs`, the first, ends the first line."""
 
 
 def shipped_file(variable: Variable) -> Path:
@@ -104,10 +99,10 @@ def shipped_file(variable: Variable) -> Path:
 def to_text(header: DrawsHeader, names: Sequence[str], draws: Array) -> str:
     """The whole file, numbers to six figures."""
     text, table = StringIO(), StringIO()
-    begin, labels = (LABORATORY_LINE, {**LABELS, **OF_LABORATORY}) if header.resampled else (FIRST_LINE, LABELS)
-    text.write(f"{begin}{header.inputs}\n# form: {FORM}\n")
-    for field, label in labels.items():
-        text.write(f"# {label}: {_to_text(getattr(header, field))}\n")
+    text.write(f"{LABORATORY_LINE if header.resampled else FIRST_LINE}{header.inputs}\n# form: {FORM}\n")
+    for field, label in LABELS.items():
+        if header.resampled or field not in OF_LABORATORY:
+            text.write(f"# {label}: {_to_text(getattr(header, field))}\n")
     writer = csv.writer(table, lineterminator="\n")
     writer.writerow(names)
     writer.writerows([_figures(value) for value in row] for row in draws.tolist())
@@ -162,8 +157,7 @@ def read_draws(path: Path) -> tuple[DrawsHeader, tuple[str, ...], Array, tuple[s
     if len(rows) < 2:
         raise RecordError(f"{path.name}: the table has no draws: {CURE}")
     names = tuple(rows[0])
-    expected = _inferred(header.variable)
-    _check_names(path.name, expected, names)
+    _check_names(path.name, _inferred(header.variable), names)
     draws = _numbers(path.name, names, rows[1:], len(head) + 2)
     remembered = [name in MEMORY_NAMES for name in names]
     constants = tuple(name for name in names if name not in MEMORY_NAMES)
@@ -193,19 +187,16 @@ def _header(name: str, head: Sequence[str]) -> DrawsHeader:
         raise RecordError(
             f"{name}, line 2: form {known.get('form', 'none')} of draws, this program reads {FORM}: {cure}"
         )
-    missing = [label for label in LABELS.values() if label not in known]
+    missing = [label for field, label in LABELS.items() if label not in known and field not in OF_LABORATORY]
     if missing:
         raise RecordError(f"{name}: the header has no line {missing[0]!r}: {cure}")
     inputs = head[0].removeprefix(FIRST_LINE).removeprefix(LABORATORY_LINE).strip()
     current = current_inputs()
     if inputs != current:
         raise RecordError(f"{name}, line 1: made from evidence and priors {inputs}, this program has {current}: {cure}")
-    labels = {**LABELS, **OF_LABORATORY}
-    read: dict[str, Any] = {"inputs": inputs, **{field: known.get(label, "") for field, label in labels.items()}}
-    for field in ("seed", "likelihoods", "r_hat", "ess"):
-        read[field] = _number(read[field], f"{name}, {labels[field]}")
-    for field in ("seed", "likelihoods"):
-        read[field] = int(read[field])
+    read: dict[str, Any] = {"inputs": inputs, **{field: known.get(label, "") for field, label in LABELS.items()}}
+    for field, kind in {"seed": int, "likelihoods": int, "r_hat": float, "ess": float}.items():
+        read[field] = kind(_number(read[field], f"{name}, {LABELS[field]}"))
     for field in ("left_out", "offsets"):
         read[field] = () if read[field] == "nothing" else tuple(read[field].split(", "))
     try:
@@ -249,6 +240,3 @@ def current_inputs(table: Path = CONSTANTS) -> str:
     """Digest of the evidence and priors that this program's constants, or another shipped table, were made from."""
     with table.open(encoding="utf-8") as file:
         return file.readline().rpartition(" ")[2].strip()
-
-
-assert {field.name for field in fields(DrawsHeader)} == {*LABELS, *OF_LABORATORY, "inputs"}

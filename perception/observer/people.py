@@ -8,21 +8,18 @@ from dataclasses import dataclass, fields
 from functools import lru_cache, partial
 from statistics import NormalDist
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
+from thermicon.circuit import Rig
 from thermicon.circuit.records import Record, shipped_records
 from thermicon.icons.model.arguments import checked
 
 from ..arrays import Array, own_arrays
 from .channels import CHANNELS, Channel
 from .constants import Both, record_of
-from .mechanisms.tissue import depth_keys
 from .observer import Observer, load_thresholds, observer_records
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,11 +85,13 @@ class People:
 @lru_cache(maxsize=1024)
 def _as_met(rig: Rig, contact: float, layer: float, depths_m: Both[float] | None) -> Rig:
     """The rig with contact resistance and outermost layer multiplied; kept, since a ranking asks for it twice."""
-    keys = {
+    keys: dict[str, float | str] = {
         "contact.resistance_m2K_per_W": contact * rig.contact.resistance_m2K_per_W,
         "skin.layer.0.thickness_mm": layer * rig.skin.layers[0].thickness_m * 1e3,
-        **({} if depths_m is None else depth_keys(rig, depths_m)),
     }
+    if depths_m is not None and not rig.skin.own:  # a rig that places its own receptors keeps them
+        cold_mm, warm_mm = (1e3 * depth for depth in depths_m)
+        keys |= {"skin.depth_from": "surface", "skin.cold_receptor_mm": cold_mm, "skin.warm_receptor_mm": warm_mm}
     return rig.with_(**keys)
 
 

@@ -115,9 +115,13 @@ def middle_of(some: Laboratories, constants: Array, predicted: Array, played: St
 
 
 def off_middle(values: Array) -> Array:
-    """Mean square (rows,) of how many SDs a row lies from the median of each column, in logarithms where they exist."""
+    """The same of each column in logarithms, where it has them."""
     positive = (values > 0.0).all(axis=0)
-    values = np.where(positive, np.log(np.where(positive, values, 1.0)), values)
+    return off_centre(np.where(positive, np.log(np.where(positive, values, 1.0)), values))
+
+
+def off_centre(values: Array) -> Array:
+    """Mean square (rows,) of how many SDs a row lies from the median of each column."""
     spread = values.std(axis=0)
     off = np.divide(values - np.median(values, axis=0), spread, out=np.zeros_like(values), where=spread > 0.0)
     return np.asarray(np.square(off).mean(axis=1))

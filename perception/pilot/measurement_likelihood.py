@@ -23,10 +23,9 @@ from ..experiments.laboratory import PEOPLE, SEED, Laboratory
 from ..experiments.measure import Condition, Setting, logs_of
 from ..experiments.tasks import DISCREPANCY, UNSTATED
 from ..kernels.parallel import in_order
-from ..observer.observer import Observer
 from .likelihood import features_of, ridge, smooth_features
 from .measurements_file import Measurements
-from .states import OFFSETS, Laboratories, LaboratoryPrior
+from .states import Laboratories, LaboratoryPrior
 
 RATING_SCALE = 0.7
 """SD (ln) by which another laboratory's scale of ratings may differ from the published one: a factor of 2; assumed."""
@@ -82,11 +81,6 @@ def person_covariance(measured: Measurements, between: Array) -> Array:
     return between + RATING_PEOPLE**2 * np.outer(rated, rated) + NUGGET * np.eye(len(rated))
 
 
-def log_errors(measured: Measurements, within: Array) -> Array:
-    """Standard errors (participants, conditions) of logs: as stated, else by trials, else `UNSTATED`."""
-    return _errors(measured.errors / measured.values, measured.trials, within)
-
-
 def log_likelihood(measured: Measurements, each: SimulatedMeasurements, groups: tuple[Group, ...] = ()) -> Array:
     """Ln likelihood (laboratories,) of all values, up to a constant."""
     shared, spread = shared_covariance(measured), person_covariance(measured, each.between)
@@ -95,7 +89,7 @@ def log_likelihood(measured: Measurements, each: SimulatedMeasurements, groups: 
     found = np.zeros(len(each.mean))
     for group in groups or groups_of(measured):
         used = group.conditions
-        error = _errors(group.stated, group.trials, each.within[:, used])
+        error = log_errors(group.stated, group.trials, each.within[:, used])
         own = spread[:, used[:, None], used] + np.square(error)[:, :, None] * np.eye(len(used))
         inverse = np.linalg.inv(own)
         off = group.mean - each.mean[:, used]
@@ -109,7 +103,8 @@ def log_likelihood(measured: Measurements, each: SimulatedMeasurements, groups: 
     return np.asarray(found - 0.5 * np.linalg.slogdet(inner)[1])
 
 
-def _errors(stated: Array, trials: Array, within: Array) -> Array:
+def log_errors(stated: Array, trials: Array, within: Array) -> Array:
+    """Standard errors (..., conditions) of logs: as stated, else by trials, else `UNSTATED`."""
     by_trials = within / np.sqrt(trials)
     return np.where(np.isnan(stated), np.where(np.isnan(by_trials), UNSTATED, by_trials), stated)
 
@@ -181,9 +176,7 @@ def measuring(
     prior: LaboratoryPrior, row: Array, setting: Setting, people: int = PEOPLE, seed: int = SEED
 ) -> Laboratory:
     """A laboratory by a row of `LaboratoryPrior.values`, which measures in a setting."""
-    named: dict[str, float] = dict(zip(prior.names, row.tolist(), strict=True))
-    constants = Observer.from_values(named, prior.draws.variable)
-    return setting.laboratory(constants, [named[offset] for offset in OFFSETS], people, seed)
+    return setting.laboratory(*prior.observer_of(row), people, seed)
 
 
 def predicted(

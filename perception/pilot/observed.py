@@ -6,12 +6,13 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar, Unpack
+from typing import Any, Generic, TypeVar, Unpack
 
 import numpy as np
 
 from thermicon.circuit.program import own_version
 from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons import IconSet
 from thermicon.icons.drawn import Drawn, Tabled
 from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import InputError, checked
@@ -27,11 +28,6 @@ from .playing import Confusions, Stage, laboratories_for, stage
 from .prediction import ChangedConstant, ChangedPrediction, Fit, MeasurementFit, SetPrediction, changed
 from .states import LaboratoryPrior
 from .trials import Trials
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from thermicon.icons import IconSet
 
 DRAWS, LEAST_DRAWS = 1000, 20
 D = TypeVar("D", Namings, MeasuredValues)
@@ -118,12 +114,9 @@ class Observed(Drawn, Tabled, Generic[D, F]):
             "constants": [asdict(each) for each in self.constants],
         }
 
-    def to_frame(self) -> pd.DataFrame:
+    def rows(self) -> list[dict[str, Any]]:
         """One row for each set before the data were seen, and one after."""
-        import pandas as pd
-
-        rows = [row for each in self.predictions for row in (each.before.row("before"), each.after.row("after"))]
-        return pd.DataFrame(rows)
+        return [row for each in self.predictions for row in (each.before.row("before"), each.after.row("after"))]
 
     def to_json(self) -> str:
         """Every number as JSON text."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,9 +27,6 @@ from .observed import LEAST_DRAWS
 from .playing import Confusions, laboratories_for, stage
 from .prediction import SetPrediction, Three, three
 from .states import LaboratoryPrior
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 DRAWS, EXPERIMENTS = 300, 600
 PARTICIPANTS, TRIALS = (4, 8, 12, 16, 24, 32, 48), (12, 24, 48, 96)
@@ -113,11 +110,9 @@ class ExperimentPlan(Tabled):
             "cheapest": None if cheapest is None else cheapest.to_dict(),
         }
 
-    def to_frame(self) -> pd.DataFrame:
+    def rows(self) -> list[dict[str, Any]]:
         """One row per design."""
-        import pandas as pd
-
-        return pd.DataFrame([{**each.to_dict(), "enough": self.enough(each)} for each in self.designs])
+        return [{**each.to_dict(), "enough": self.enough(each)} for each in self.designs]
 
     def to_json(self) -> str:
         """Every number as JSON text."""

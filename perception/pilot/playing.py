@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+from thermicon.circuit import Rig
+from thermicon.icons import IconSet
 
 from ..arrays import Array
 from ..identification.depths import rungs
@@ -17,10 +19,6 @@ from ..identification.population import RATE_HZ, ReceptorTemperatures, identify,
 from ..kernels.parallel import in_order
 from ..observer.people import draw_people
 from .states import Laboratories, LaboratoryPrior
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.icons import IconSet
 
 Small = NDArray[np.float32]
 SAMPLES = 256
@@ -79,7 +77,8 @@ class Stage:
         values, prior = self.prior.values(some), self.prior
 
         def one(k: int) -> Small:
-            observer, people = prior.observer_and_people(values[k], int(some.seed[k]), self.played.people)
+            observer, offsets = prior.observer_of(values[k])
+            people = draw_people(self.played.people, int(some.seed[k]), observer=observer, offsets=offsets)
             people = replace(people, contact_resistance=self.skins[0], outer_layer=self.skins[1])
             felt = respond(self.played, people, observer, detection=False)
             named = identify(felt, prior.form, people, observer, int(some.seed[k]), SAMPLES)[1].probability

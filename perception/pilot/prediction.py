@@ -12,17 +12,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
 from ..experiments.measure import Condition
+from ..identification.laboratory import COVER
 from .measurement_likelihood import SimulatedMeasurements, log_errors, person_covariance, shared_covariance
 from .measurements_file import Measurements
 from .playing import Confusions
 from .trials import Trials, plugin_information
 
-COVER = (2.5, 97.5)
 EXPERIMENTS = 1000
 LEAST_PEOPLE = 3
 """Participants that a spread between them needs to be compared."""
@@ -46,9 +47,9 @@ class SetPrediction:
         """Summarise the laboratories of a sample."""
         return cls(title, int(played.probability.shape[1]), three(played.correct), three(played.bits))
 
-    def row(self, data: str) -> dict[str, str | float]:
+    def row(self, data: str) -> dict[str, Any]:
         """A row of a table, for `data` of before or after."""
-        row: dict[str, str | float] = {"set": self.title, "data": data}
+        row: dict[str, Any] = {"set": self.title, "data": data}
         for name in ("proportion_correct", "information_bits"):
             row |= zip((name, f"{name}_low", f"{name}_high"), getattr(self, name), strict=True)
         return row
@@ -220,12 +221,12 @@ def compare_measurements(measured: Measurements, each: SimulatedMeasurements, *,
     """Compare measurements with the same ones simulated in the laboratories of a prediction."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, 32]))
     there, shared = measured.given, np.linalg.cholesky(shared_covariance(measured))
-    means = np.empty((EXPERIMENTS, len(measured.conditions)))
+    means, stated = np.empty((EXPERIMENTS, len(measured.conditions))), measured.errors / measured.values
     for row in range(EXPERIMENTS):
         k = row % len(each.mean)
         root = np.linalg.cholesky(person_covariance(measured, each.between[k]))
         people = rng.standard_normal(there.shape) @ root.T
-        errors = log_errors(measured, each.within[k]) * rng.standard_normal(there.shape)
+        errors = log_errors(stated, measured.trials, each.within[k]) * rng.standard_normal(there.shape)
         logs = each.mean[k] + people + errors + shared @ rng.standard_normal(len(root))
         means[row] = np.where(there, logs, 0.0).sum(axis=0) / there.sum(axis=0)
     seen = np.log(measured.means)

@@ -11,21 +11,18 @@ import math
 import re
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.circuit import Rig
 from thermicon.circuit.inputs import InputError, quoted, read_bytes
 from thermicon.circuit.program import own_version
+from thermicon.icons import IconSet
 
 from ..arrays import Array
 from ..identification.skin_alone import skin_alone
 from ..ranking.rank import digests_of
 from .trials import Trials
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.icons import IconSet
 
 WHAT, MOST_MB = "sealed prediction", 200
 LEAST = 1e-6

@@ -22,7 +22,7 @@ from ..observer.constants import BETWEEN_LABORATORIES
 from ..observer.draws import PosteriorDraws
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
-from ..observer.people import People, draw_people, normal_scores
+from ..observer.people import normal_scores
 from ..observer.priors import Prior, priors_of
 
 LEAST_VARIANCE = 1e-12
@@ -117,11 +117,10 @@ class LaboratoryPrior:
         spread = constants[:, self.draws.names.index(BETWEEN_LABORATORIES)]
         return np.hstack([constants, memory, spread[:, None] * some.place[:, -len(CHANNELS) :]])
 
-    def observer_and_people(self, values: Array, seed: int, people: int) -> tuple[Observer, People]:
-        """The observer of one laboratory, by a row of `values`, and people who come there."""
+    def observer_of(self, values: Array) -> tuple[Observer, list[float]]:
+        """The observer of one laboratory, by a row of `values`, and how much more sensitive (ln) its people are."""
         named = dict(zip(self.names, values.tolist(), strict=True))
-        observer = Observer.from_values(named, self.draws.variable)
-        return observer, draw_people(people, seed, observer=observer, offsets=[named[offset] for offset in OFFSETS])
+        return Observer.from_values(named, self.draws.variable), [named[offset] for offset in OFFSETS]
 
 
 def _scores(parameter: Uncertain, draws: PosteriorDraws) -> Array:

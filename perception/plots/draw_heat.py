@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,9 +32,8 @@ def plot_confusion(ranking: Ranking, ax: Axes | None = None) -> Axes:
     order = clustered_order(ranking.d_prime)
     names = [ranking.marked[k] for k in order]
     axes = heat(names, names, 100.0 * ranking.confusion[np.ix_(order, order)], ax, top=100.0, bend=0.5)
-    axes.set_xlabel("answered")
-    axes.set_ylabel("presented")
-    axes.set_title(f"Predicted answers, % (diagonal correct: {100 * ranking.proportion_correct:.0f} %)")
+    title = f"Predicted answers, % (diagonal correct: {100 * ranking.proportion_correct:.0f} %)"
+    axes.set(xlabel="answered", ylabel="presented", title=title)
     return axes
 
 
@@ -44,9 +43,8 @@ def plot_distance(ranking: Ranking, ax: Axes | None = None) -> Axes:
     names = [ranking.marked[k] for k in order]
     matrix = ranking.d_prime[np.ix_(order, order)]
     axes = heat(names, names, matrix, ax, top=max(float(matrix.max()), 2.0 * DISTINGUISHABLE_DPRIME))
-    axes.set_xlabel("… and")
-    axes.set_ylabel("d′ between …")
-    axes.set_title(f"Predicted d′ between icons (memory: {ranking.memory})")
+    title = f"Predicted d′ between icons (memory: {ranking.memory})"
+    axes.set(xlabel="… and", ylabel="d′ between …", title=title)
     return axes
 
 
@@ -82,9 +80,7 @@ def heat(
     edges = [np.arange(count + 1) - 0.5 for count in (len(columns), len(rows))]
     norm = PowerNorm(bend, vmin=0.0, vmax=highest)
     drawn = axes.pcolormesh(*edges, values, cmap=light_map(), norm=norm, edgecolors="#e4e4e4", lw=0.4)
-    axes.set_aspect("equal")
-    axes.set_xlim(-0.5, len(columns) - 0.5)
-    axes.set_ylim(len(rows) - 0.5, -0.5)
+    axes.set(aspect="equal", xlim=(-0.5, len(columns) - 0.5), ylim=(len(rows) - 0.5, -0.5))
     size = 9.0 if len(rows) <= FEW else 8.0 if len(rows) <= MOST_NUMBERED else 6.0
     axes.set_xticks(np.arange(len(columns)), [short(name) for name in columns], fontsize=size)
     for label in axes.get_xticklabels():
@@ -93,9 +89,8 @@ def heat(
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
     if len(rows) > MOST_NUMBERED:
-        figure = axes.get_figure()
-        if figure is not None:
-            figure.colorbar(drawn, ax=axes, shrink=0.6, aspect=30)
+        figure: Any = axes.get_figure()
+        figure.colorbar(drawn, ax=axes, shrink=0.6, aspect=30)
         return axes
     number = 9.0 if len(rows) <= FEW else 7.0
     for (i, j), value in np.ndenumerate(values):

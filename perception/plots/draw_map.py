@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -37,8 +37,7 @@ def plot_map(found: PerceptualMap, ax: Axes | None = None) -> Axes:
             _ellipse(axes, point, covariance)
     axes.scatter(found.points[:, 0], found.points[:, 1], s=26, color=INK, zorder=3)
     _frame(axes, found)
-    axes.set_xlabel("d′")
-    axes.set_ylabel("d′")
+    axes.set(xlabel="d′", ylabel="d′")
     axes.grid(alpha=0.25, linewidth=0.6)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
@@ -82,9 +81,7 @@ def _limit(axes: Axes, middle: Array, size: Array) -> None:
 
 def _inches(axes: Axes) -> Array:
     """Width and height of axes once the layout of their figure has settled."""
-    figure = axes.get_figure(root=True)
-    if figure is None:
-        return np.ones(2)
+    figure: Any = axes.get_figure(root=True)
     figure.draw_without_rendering()
     box = axes.get_position()
     return np.array([figure.get_figwidth() * box.width, figure.get_figheight() * box.height])
@@ -130,7 +127,7 @@ def label_offsets(dots: Array, names: Sequence[str], room: Array, size: float = 
     crowded = (gaps < 80.0).sum(axis=1)
     for k in sorted(range(len(names)), key=lambda k: (-crowded[k], k)):
         wide, high = text_width(names[k], size) + 4.0, 1.3 * size
-        best, least = offsets[k], np.inf
+        least = np.inf
         for distance, angle in product((0.0, 9.0, 20.0, 34.0, 52.0, 74.0, 100.0), range(0, 360, 30)):
             towards = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
             offset = towards * (np.array([wide, high]) / 2.0 + 5.0 + distance)
@@ -145,10 +142,8 @@ def label_offsets(dots: Array, names: Sequence[str], room: Array, size: float = 
             outside = max(0.0, -box[0]) + max(0.0, -box[1]) + max(0.0, box[2] - room[0]) + max(0.0, box[3] - room[1])
             cost = covered + 400.0 * hidden + 60.0 * outside + distance + 0.5 * (angle % 90 != 0)
             if cost < least - 1e-9:
-                best, least = offset, cost
-        offsets[k] = best
-        x, y = dots[k] + best
-        boxes.append((x - wide / 2, y - high / 2, x + wide / 2, y + high / 2))
+                offsets[k], least, taken = offset, cost, box
+        boxes.append(taken)
     return offsets
 
 

@@ -77,9 +77,7 @@ def plot_sensation(percept: Percept, ax: Axes | None = None) -> Axes:
         axes.axvline(percept.onset_s, color="0.35", linewidth=1.0, linestyle=":", label=said)
     else:
         axes.plot([], [], " ", label=f"not felt {NOMINAL} (p {percept.detected_probability:.2f})")
-    axes.set_xlabel("time (s), receptor clock")
-    axes.set_ylabel("sensation (d′)")
-    axes.set_title(percept.icon or "percept")
+    axes.set(xlabel="time (s), receptor clock", ylabel="sensation (d′)", title=percept.icon or "percept")
     axes.set_xlim(0.0, float(percept.time_s[-1]))
     axes.set_ylim(bottom=0.0)
     axes.spines[["top", "right"]].set_visible(False)
@@ -179,9 +177,7 @@ def plot_roc(shown: Percept | PairScore, ax: Axes | None = None) -> Axes:
             area = NORMAL.cdf(d_prime / 2.0**0.5)
             axes.plot(*shares, color=colour, lw=1.8, label=f"{label}: d′ {d_prime:.2f}, area {area:.3f}")
     axes.set(xlim=(0.0, 100.0), ylim=(0.0, 100.5), aspect="equal")
-    axes.set_xlabel(f"false alarms: {alarms} (%)")
-    axes.set_ylabel(f"hits: {hits} (%)")
-    axes.set_title(name)
+    axes.set(xlabel=f"false alarms: {alarms} (%)", ylabel=f"hits: {hits} (%)", title=name)
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(loc="lower right", frameon=False, fontsize="small")
     return axes

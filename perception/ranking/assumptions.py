@@ -15,9 +15,11 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from statistics import NormalDist
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+
+from thermicon.circuit import Rig
 
 from ..arrays import Array
 from ..identification.laboratory_draws import LaboratoryDraws
@@ -26,9 +28,6 @@ from ..observer.mechanisms.site import on_forearm
 from ..observer.observer import Observer
 from ..observer.people import People, people_records
 from ..sensation.coverage import nearest_site, outside_site
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
 
 FEWEST_PEOPLE, FEWEST_DRAWS = 100, 64
 """Fewer do not distinguish an effect of some points from chance."""

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.circuit import Rig
 from thermicon.circuit.cores import cores
 from thermicon.circuit.program import DRIVES
 from thermicon.circuit.program import code_digest as digest_of
+from thermicon.icons import Icon
 
 from ..arrays import Array, own_arrays
 from ..identification.confusion import NAMED_SAMPLES, SAMPLES, normalised, sampling_error
@@ -34,10 +35,6 @@ from ..observer.observer_model import Crowd, ObserverModel, Tracking
 from ..observer.people import People
 from ..sensation.detection import Detection, report_step
 from ..sensation.detection import pooled as pooled_detection
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.icons import Icon
 
 DT_S = 1.0 / RATE_HZ
 SAMPLES_AT_ONCE = 1_200_000

@@ -5,10 +5,11 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Unpack
+from typing import Unpack
 
 from thermicon.circuit.program import own_version
 from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons import IconSet
 from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import checked
 
@@ -23,9 +24,6 @@ from .batches import TRIALS, Job, collect_batches
 from .ranking import Ranking
 from .rules import rig_rules
 from .scores import assemble, objection, worst_of
-
-if TYPE_CHECKING:
-    from thermicon.icons import IconSet
 
 
 @checked

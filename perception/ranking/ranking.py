@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import permutations
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,21 +15,16 @@ from thermicon.icons.drawn import Drawn, Tabled
 from thermicon.icons.number_text import count_of
 
 from ..arrays import Array
+from ..identification.carry_over import CarryOver
 from ..identification.laboratory import NewLaboratory, interval_of
+from ..identification.map import PerceptualMap
+from ..identification.task import Task
+from ..observer.observer import MemoryForm
 from ..observer.observer_model import Crowd, ObserverModel
 from .assumptions import Assumptions, assumptions_of
+from .batches import Job, PooledResult
 from .rules import RuleResult
 from .scores import IconScore, PairScore, counted, disagreements
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from ..identification.carry_over import CarryOver
-    from ..identification.map import PerceptualMap
-    from ..identification.task import Task
-    from ..observer.observer import MemoryForm
-    from .batches import Job, PooledResult
-
 
 PERCENTAGE_POINT = 0.01
 
@@ -277,12 +272,6 @@ class Ranking(Drawn, Tabled):
         from ..identification.map import map_of
 
         return map_of(self)
-
-    def to_frame(self) -> pd.DataFrame:
-        """The rows as a table."""
-        import pandas as pd
-
-        return pd.DataFrame(self.rows())
 
     def to_dict(self) -> dict[str, Any]:
         """The content of `rank --json` as plain data: missing values are None, never NaN."""

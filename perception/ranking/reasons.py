@@ -18,7 +18,7 @@ import numpy as np
 
 from thermicon.icons.number_text import decimals, fixed, verdict
 
-from ..arrays import Array
+from ..arrays import held
 from ..identification.episodes import PARTS, Episode, Episodes, distance_shares
 from ..observer.channels import CHANNELS, Channel, MemoryForm
 from ..observer.observer import Observer
@@ -206,12 +206,8 @@ def _onsets(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept) -> str:
 def _alike(a: Trace, b: Trace) -> bool:
     """Whether both receptors go through the same temperatures at the same times, the shorter trace held at its end."""
     rows = max(a.time_s.size, b.time_s.size)
-
-    def held(trace: Trace, channel: Channel) -> Array:
-        values = features.receptor_C(trace, channel)
-        return np.pad(values, (0, rows - values.size), mode="edge")
-
-    apart_K = max(float(np.abs(held(a, channel) - held(b, channel)).max()) for channel in CHANNELS)
+    courses = ([held(features.receptor_C(trace, channel), rows) for trace in (a, b)] for channel in CHANNELS)
+    apart_K = max(float(np.abs(one - other).max()) for one, other in courses)
     return apart_K < features.STILL_K and bool(a.time_s[1] == b.time_s[1])
 
 

@@ -15,11 +15,12 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import product
-from typing import TYPE_CHECKING, Unpack
+from typing import Any, Unpack
 
 import numpy as np
 
 from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons import Icon
 from thermicon.icons.drawn import Drawn, Tabled
 from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import checked
@@ -35,12 +36,6 @@ from ..observer.observer_model import Crowd, CrowdWords, ObserverModel
 from ..observer.people import People, people_records
 from .assumptions import explained, explained_together, scores_of
 from .ranking import with_changes
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from thermicon.icons import Icon
-
 
 RATE_HZ = 12.5
 """As draws are judged for the intervals of a new laboratory."""
@@ -170,11 +165,9 @@ class Sensitivity(Drawn, Tabled):
         """Measurements that would take away at least 2 % of the variance of the proportion correct."""
         return tuple(each for each in self.reductions if each.proportion_correct >= NOTEWORTHY)
 
-    def to_frame(self) -> pd.DataFrame:
+    def rows(self) -> list[dict[str, Any]]:
         """One row per constant, the largest effect first."""
-        import pandas as pd
-
-        return pd.DataFrame([asdict(effect) for effect in self.effects])
+        return [asdict(effect) for effect in self.effects]
 
     def __repr__(self) -> str:
         first = self.first[0].measurement if self.first else "nothing"

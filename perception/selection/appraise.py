@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import Any, Unpack
 
 import numpy as np
 
 from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.circuit.solver.simulate import duration_s
+from thermicon.icons import Icon
 from thermicon.icons.files.shipped import Icons, icons_of
 from thermicon.icons.model.arguments import InputError, checked
 
@@ -20,9 +22,6 @@ from ..observer.observer import Observer
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..observer.people import People
 from .request import Objective
-
-if TYPE_CHECKING:
-    from thermicon.icons import Icon
 
 REACHED_BY = 0.95
 """Share of people who reach what a set is also judged by."""
@@ -113,8 +112,6 @@ def population_response(
     observer: Observer,
 ) -> tuple[PopulationResponse, Array]:
     """Every person's response to every icon, and durations (s) of the icons."""
-    from thermicon.circuit.solver.simulate import duration_s
-
     durations = np.array([duration_s(icon, rig) for icon in icons])
     end = run_end_s(durations.tolist(), rate_Hz) if end_s is None else end_s
     played = ReceptorTemperatures.simulated(icons, crowd, rig, observer, end, rate_Hz, tracking)

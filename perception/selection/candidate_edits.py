@@ -9,19 +9,23 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from thermicon.circuit.solver.inverse import baseline_C
+from thermicon.circuit.solver.simulate import duration_s
+from thermicon.icons import CueErrors, Icon
+from thermicon.icons.model.format import statement_text
+from thermicon.icons.model.icon import all_played
+from thermicon.icons.model.statements import Repeat, Total
 
 from ..arrays import Array
 from ..identification.population import run_end_s
 from ..observer.observer import MemoryForm, Observer
 from ..ranking.scores import objection
 from .pool import POOL_HZ, Pool
-
-if TYPE_CHECKING:
-    from thermicon.icons import Icon
 
 FIELDS = (
     *("by_K", "to_C", "by_A", "to_A"),
@@ -73,8 +77,6 @@ def with_number(icon: Icon, number: Number, value: float) -> Icon:
 
 def repeated(icon: Icon, count: int) -> Icon:
     """The icon with all that moves it in one `repeat`; checks of the total stay outside."""
-    from thermicon.icons.model.statements import Repeat, Total
-
     body = tuple(part for part in icon.statements if not isinstance(part, Total))
     checks = tuple(part for part in icon.statements if isinstance(part, Total))
     return replace(icon, statements=(Repeat(count, body), *checks))
@@ -82,8 +84,6 @@ def repeated(icon: Icon, count: int) -> Icon:
 
 def line_of(icon: Icon, path: Sequence[int]) -> str:
     """The line of text at a path: of a repeat its first line."""
-    from thermicon.icons.model.format import statement_text
-
     body: Sequence[Any] = icon.statements
     for place in path[:-1]:
         body = body[place].body
@@ -91,8 +91,6 @@ def line_of(icon: Icon, path: Sequence[int]) -> str:
 
 
 def _numbers(body: Sequence[Any], before: tuple[int, ...], baseline_C: float) -> Iterator[Number]:
-    from thermicon.icons.model.statements import Repeat, Total
-
     for place, part in enumerate(body):
         path = (*before, place)
         for field in FIELDS:
@@ -162,9 +160,6 @@ def worse(before: Array, after: Array, wanted: float) -> NDArray[np.bool_]:
 
 def offers(of: Screening, target: float, largest: float, rejected: Rejections) -> list[CandidateEdit]:
     """Edits that bring the pair to a target d′ for the nominal person, the cheapest first."""
-    from thermicon.circuit.solver.inverse import baseline_C
-    from thermicon.icons.model.icon import all_played
-
     icons = of.kept.icons
     # An icon that another one plays would change that one too.
     played = {one.name for icon in icons for one in all_played(icon.statements)}
@@ -232,9 +227,6 @@ def _valid(
     of: Screening, place: int, make: Callable[[], tuple[Icon, str, str]], ratio: float, way: int | None, step: int
 ) -> list[CandidateEdit]:
     """The edit of an icon into another, with its line before and after, unless that cannot be run or lasts too long."""
-    from thermicon.circuit.solver.simulate import duration_s
-    from thermicon.icons import CueErrors
-
     try:
         new, old, line = make()
         added = duration_s(new, of.kept.rig) - float(of.kept.durations_s[place])

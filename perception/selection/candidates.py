@@ -8,15 +8,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermicon.icons import CueErrors, Family, Icon, IconSet
+from thermicon.icons.model.parameter import Parameter
+from thermicon.icons.model.statements import Repeat
 from thermicon.icons.number_text import number
-
-if TYPE_CHECKING:
-    from thermicon.icons import Family, Icon, IconSet
-    from thermicon.icons.model.parameter import Parameter
 
 MOVED = 0.5
 FOUND = "found by search"
@@ -51,8 +50,6 @@ class Candidate:
 
 def candidate_at(family: Family, shares: Sequence[float]) -> Candidate | None:
     """The candidate at these shares, spans taken as continuous between their ends; None where it cannot be run."""
-    from thermicon.icons import CueErrors
-
     values = {each.name: value_at(each, share) for each, share in zip(family.parameters, shares, strict=True)}
     try:
         return Candidate(family.variant(values), family, tuple(shares))
@@ -121,8 +118,6 @@ def found_set(icons: IconSet, found: Sequence[Candidate], seed: int) -> IconSet:
 
     Tags of a member say the search and its values.
     """
-    from thermicon.icons import Icon, IconSet
-
     made = []
     for each, name in zip(found, names_of(found), strict=True):
         icon = each.icon
@@ -147,8 +142,6 @@ def chosen_set(icons: IconSet, names: Sequence[str], site: str) -> IconSet:
     >>> [icon.name for icon in chosen_set(pool, [icon.name for icon in pool][:2], "thenar")]
     ['dip-1', 'dip-2']
     """
-    from thermicon.icons import Icon, IconSet
-
     counts: dict[str, int] = {}
     context = replace(icons.context, site=icons.context.site or site)
     made = []
@@ -184,8 +177,6 @@ def at_ends(found: Sequence[Candidate]) -> tuple[str, ...]:
 
 def _unrepeated(statements: Sequence[Any]) -> tuple[Any, ...]:
     """Statements with the bodies of `repeat 1` in its place."""
-    from thermicon.icons.model.statements import Repeat
-
     made: list[Any] = []
     for each in statements:
         if isinstance(each, Repeat):

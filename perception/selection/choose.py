@@ -9,27 +9,24 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from thermicon.icons.model.arguments import checked
 
-from ..identification.carry_over import task_among
+from ..identification.carry_over import CarryOver, task_among
 from ..identification.laboratory import DRAWS, NewLaboratory, Nominal, new_laboratory
 from ..identification.population import RATE_HZ
 from ..kernels.parallel import Progress, step_counter
 from ..observer.observer_model import Crowd, ObserverModel
+from ..ranking.batches import FeltResult, Job
+from ..ranking.ranking import Ranking
 from .appraise import REACHED_BY, Appraisal, appraise, nearest_two
 from .goal import Goal
 from .pool import Pool
 from .request import ChoiceError, Objective, Selection
 from .subset_identification import PEOPLE, RESTARTS, SubsetIdentification, pick
-
-if TYPE_CHECKING:
-    from ..identification.carry_over import CarryOver
-    from ..ranking.batches import FeltResult, Job
-    from ..ranking.ranking import Ranking
 
 TOLD = ("icons", "objective", "value", "optimal", "bound", "worst_pair", "total_s", "total_J", "pool", "people")
 """What `rank --json` calls alike, in its order."""

@@ -10,10 +10,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from thermicon.icons import Icon, parse
 from thermicon.icons.model.arguments import InputError, checked
 from thermicon.icons.near_words import did_you_mean
 
@@ -23,14 +24,10 @@ from ..identification.carry_over import prepare_task
 from ..identification.population import memory_dprime, run_end_s
 from ..identification.task import USUAL, Task
 from ..observer.people import People
+from ..ranking.ranking import Ranking
 from .appraise import appraise, population_response
 from .candidate_edits import CandidateEdit, Rejections, Screening, offers, worse
 from .pool import POOL_HZ, Pool
-
-if TYPE_CHECKING:
-    from thermicon.icons import Icon
-
-    from ..ranking.ranking import Ranking
 
 LARGEST, FARTHEST = 4.0, 256.0
 """A number becomes at most four times larger or smaller; where that separates no pair, up to 256 times."""
@@ -138,8 +135,6 @@ def cheapest_edits(ranking: Ranking, which: str = "worst") -> dict[tuple[str, st
 
 def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | NoEdit:
     """The cheapest offer that people confirm; each one that they do not confirm moves the target of the next."""
-    from thermicon.icons import parse
-
     (i, j), job, before, nominal = pair, ranking.job, ranking.d_prime, ranking.model.nominal
     kept = Pool.of(job.icons, job.rig, nominal)
     now = kept.dprimes(kept, job.memory, nominal)

@@ -9,9 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import Any, Unpack
 
 from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.circuit.solver.simulate import duration_s
+from thermicon.icons import IconSet
 from thermicon.icons.drawn import Drawn, Tabled
 from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import checked
@@ -22,18 +24,12 @@ from ..kernels.parallel import Progress, step_counter
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords, ObserverModel
 from ..ranking.batches import FeltResult, Job, felt_by_people
 from ..ranking.rank import rank
+from ..ranking.ranking import Ranking
 from .choose import Choice, Chooser
 from .goal import Goal
 from .goal_result import GoalResult, SetOutcome, judge_goal
 from .request import ChoiceError, Objective, Selection
 from .subset_identification import PEOPLE, RESTARTS
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from thermicon.icons import IconSet
-
-    from ..ranking.ranking import Ranking
 
 ROUGH_DRAWS, ROUGH_RESTARTS = 64, 1
 """Draws of the posterior behind a rough frontier, whose people are the first that choices are compared by."""
@@ -94,12 +90,6 @@ class Frontier(Drawn, Tabled):
             }
             for k, point in enumerate(self.points)
         ]
-
-    def to_frame(self) -> pd.DataFrame:
-        """The rows as a table."""
-        import pandas as pd
-
-        return pd.DataFrame(self.rows())
 
     def __repr__(self) -> str:
         first, job = self.points[0], self.job
@@ -169,8 +159,6 @@ def frontier(
     >>> [len(point.icons) for point in found.points]
     [2, 3]
     """
-    from thermicon.circuit.solver.simulate import duration_s
-
     crowd = crowd.but(**words)
     crowd = crowd.but(observer=crowd.model)  # a file is read once
     if most < 2:

@@ -10,13 +10,10 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from thermicon.icons.model.arguments import InputError, checked
 from thermicon.icons.near_words import did_you_mean
-
-if TYPE_CHECKING:
-    from lark import Lark
 
 GRAMMAR = r"""
 start: part ("," part)*
@@ -153,10 +150,11 @@ class Goal:
         comparison, a number with its unit, and for the first three `for N % of people`; or number, unit and quantity,
         as in `90 % correct`; or `safety green`, `safety amber`.
         """
+        from lark import Lark
         from lark.exceptions import UnexpectedInput
 
         try:
-            tree = _parser().parse(text)
+            tree = Lark(GRAMMAR, parser="lalr", propagate_positions=True).parse(text)
         except UnexpectedInput as problem:
             raise GoalError(_where(text, problem)) from None
         return cls(tuple(_part(k, text, part) for k, part in enumerate(tree.children, 1)))
@@ -194,12 +192,6 @@ class Goal:
 
     def __repr__(self) -> str:
         return f"Goal({self.text})"
-
-
-def _parser() -> Lark:
-    from lark import Lark
-
-    return Lark(GRAMMAR, parser="lalr", propagate_positions=True)
 
 
 def _part(number: int, text: str, tree: Any) -> GoalPart:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,13 +16,11 @@ from thermicon.icons.model.arguments import checked
 from thermicon.icons.number_text import listed
 
 from ..arrays import Array
+from ..ranking.batches import FeltResult
+from ..ranking.ranking import Ranking
 from .choose import Choice
 from .goal import SAFETY, VERDICTS, Goal, GoalPart
-
-if TYPE_CHECKING:
-    from ..ranking.batches import FeltResult
-    from ..ranking.ranking import Ranking
-    from .pool import Pool
+from .pool import Pool
 
 TOLERANCE = 1e-9
 

@@ -5,11 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.circuit import Rig, Trace
+from thermicon.circuit.solver.inverse import baseline_C
+from thermicon.circuit.solver.simulate import duration_s, simulate_all
+from thermicon.circuit.solver.steady import steady_state
+from thermicon.icons import Icon
+
+from ..arrays import Array, held
 from ..criteria import FELT_FROM
 from ..identification.episodes import dprimes_from_memory
 from ..identification.population import run_end_s
@@ -21,10 +26,6 @@ from ..sensation.received import received, uniform_clock
 from .goal import SAFETY, Goal
 from .max_min_subset import Totals
 from .request import ChoiceError, Selection, check_selection, too_few
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig, Trace
-    from thermicon.icons import Icon
 
 POOL_HZ = 25.0
 """Rows a second of a pool that is only tried out."""
@@ -56,8 +57,6 @@ class Pool:
         rate_Hz: float = POOL_HZ,
     ) -> Pool:
         """Play icons on the rig until `end_s`, by default until the longest of them has faded, and feel them."""
-        from thermicon.circuit.solver.simulate import duration_s, simulate_all
-
         durations = np.array([duration_s(icon, rig) for icon in icons])
         end = run_end_s(durations.tolist(), rate_Hz) if end_s is None else end_s
         padded = [*icons, *[icons[-1]] * (BLOCK - len(icons))]
@@ -97,15 +96,15 @@ class Pool:
     def dprimes(self, kept: Pool, memory: MemoryForm, observer: Observer) -> Array:
         """d′ from memory (these, kept) of the nominal person, on the longer clock."""
         n = max(self.cold.shape[1], kept.cold.shape[1])
-        one, other = ((_held(pool.cold, n), _held(pool.warm, n)) for pool in (self, kept))
+        one, other = ((held(pool.cold, n), held(pool.warm, n)) for pool in (self, kept))
         names = [[trace.icon or "" for trace in pool.traces] for pool in (self, kept)]
         return dprimes_from_memory(one, other, self.dt_s, observer, memory, (names[0], names[1]))
 
     def limits(self, most_s: float | None, most_J: float | None) -> Totals:
         """The totals that a choice must keep, as costs of every icon."""
-        rows = [(self.durations_s, most_s)] * (most_s is not None) + [(self.energies_J, most_J)] * (most_J is not None)
-        costs = np.array([each for each, _ in rows]).reshape(-1, len(self))
-        return Totals(costs, tuple(most for _, most in rows if most is not None))
+        both = (self.durations_s, most_s), (self.energies_J, most_J)
+        kept = [(costs, most) for costs, most in both if most is not None]
+        return Totals(np.array([costs for costs, _ in kept]).reshape(-1, len(self)), tuple(most for _, most in kept))
 
     def totals_text(self, count: int, most_s: float | None, most_J: float | None) -> str:
         """The totals that a choice must keep, each with the least that so many icons take."""
@@ -183,15 +182,8 @@ class Pool:
         return f"no {asked.count} of the {len(self)} icons{forced} stay within {totals}"
 
 
-def _held(psi: Array, n: int) -> Array:
-    return np.pad(psi, ((0, 0), (0, n - psi.shape[1])), mode="edge")
-
-
 def _shape_of(icon: Icon, rig: Rig) -> object:
     """The common property of icons that play alike: control and corner points."""
-    from thermicon.circuit.solver.inverse import baseline_C
-    from thermicon.circuit.solver.steady import steady_state
-
     base = baseline_C(icon, rig)
     start = steady_state(rig, "display", base)[0] if icon.context.control == "current" else base
     return icon.context.control, base, icon.corners(start)

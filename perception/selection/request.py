@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from thermicon.icons.model.arguments import InputError, checked
+from thermicon.icons.near_words import did_you_mean
 from thermicon.icons.number_text import count_of
 
 Objective = Literal["worst", "correct", "bits", "bits-per-s"]
@@ -60,8 +61,6 @@ class Selection:
 
 def check_selection(asked: Selection, names: Sequence[str]) -> None:
     """Raise `ChoiceError` for more icons than there are, or one that must be in and is not there."""
-    from thermicon.icons.near_words import did_you_mean
-
     if asked.count > len(names):
         raise ChoiceError(too_few(asked.count, len(names), ()))
     for name in asked.must:

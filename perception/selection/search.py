@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Unpack
+from typing import Unpack
 
 import numpy as np
 
 from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons import Icon, IconSet
 from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import checked
 
@@ -28,9 +29,6 @@ from .candidates import Candidate, at_ends, found_set, names_of
 from .goal import Goal, GoalPart
 from .request import Objective
 from .search_run import PEOPLE, Evaluator, SearchRun
-
-if TYPE_CHECKING:
-    from thermicon.icons import Icon, IconSet
 
 EVALUATIONS = 2000
 BATCH = 16

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+
+from thermicon.circuit import Rig
+from thermicon.icons import Icon, IconSet
+from thermicon.icons.model.icon import played_icons
 
 from ..arrays import Array
 from ..identification.population import ReceptorTemperatures, memory_dprime, respond
@@ -19,10 +22,6 @@ from .max_min_subset import max_min_subset, nearest_pair
 from .pool import POOL_HZ, Pool
 from .request import ChoiceError, Objective
 from .subset_identification import ALIKE, SubsetIdentification, climb
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.icons import Icon, IconSet
 
 PEOPLE = 24
 """Of the seed the first, who differ in contact, skin and thresholds."""
@@ -167,9 +166,6 @@ def split_icons(icons: IconSet, count: int | None) -> tuple[list[Icon], int]:
 
     Raises `ChoiceError` for a file without families, and for numbers of icons that leave nothing to search.
     """
-    from thermicon.icons import Icon
-    from thermicon.icons.model.icon import played_icons
-
     if not icons.families:
         raise ChoiceError("nothing to search: the file has no family, such as icon dip(depth in 1..6 step 1 °C) { … }")
     for family in icons.families:

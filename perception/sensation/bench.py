@@ -31,16 +31,6 @@ class Stimulus:
     traces: tuple[Trace, ...]
 
     @property
-    def area_m2(self) -> float:
-        """Area of contact, m²."""
-        return self.traces[0].area_m2
-
-    @property
-    def site(self) -> str:
-        """The site on the body."""
-        return self.traces[0].site
-
-    @property
     def time_s(self) -> Array:
         """Clock (rows,), s."""
         return self.dt_s * np.arange(self.rows, dtype=np.float64)
@@ -56,7 +46,8 @@ class Stimulus:
 
     def felt(self, observer: Observer) -> tuple[Array, Array]:
         """Sensations (cold, warm) of the nominal person, shape (k, rows)."""
-        return perceive_many(*self.received(observer), self.dt_s, observer, area_m2=self.area_m2, site=self.site)
+        first = self.traces[0]
+        return perceive_many(*self.received(observer), self.dt_s, observer, area_m2=first.area_m2, site=first.site)
 
 
 @dataclass(frozen=True, slots=True)

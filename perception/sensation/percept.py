@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from thermicon.icons.drawn import Drawn
 from thermicon.icons.model.arguments import checked
 
-from ..arrays import Array, own_arrays
+from ..arrays import Array, held, own_arrays
 from ..criteria import FELT_FROM
 from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
@@ -203,12 +203,11 @@ def perceive_many(
 
     The threshold multipliers are one number or one for each leading index.
     """
-    felt = []
-    multiples = {"cold": threshold_cold, "warm": threshold_warm}
-    for channel, at_receptors in zip(CHANNELS, (cold_received, warm_received), strict=True):
+    felt, each = [], zip(CHANNELS, (cold_received, warm_received), (threshold_cold, threshold_warm), strict=True)
+    for channel, at_receptors, threshold in each:
         psi = observer.drive(at_receptors, dt_s, channel)
         # In place: memory as large as the input is what takes long in a large batch.
-        observer.sensation(psi, channel, area_m2=area_m2, site=site, threshold=multiples[channel], out=psi)
+        observer.sensation(psi, channel, area_m2=area_m2, site=site, threshold=threshold, out=psi)
         felt.append(psi)
     return felt[0], felt[1]
 
@@ -220,6 +219,6 @@ def on_one_clock(percepts: Sequence[Percept]) -> tuple[Array, Array, float]:
         if not math.isclose(each.dt_s, dt, rel_tol=1e-9):
             raise ValueError(f"percepts are on clocks of {dt:g} s and {each.dt_s:g} s: simulate all at one rate")
     n = max(each.psi_cold.size for each in percepts)
-    cold = np.stack([np.pad(each.psi_cold, (0, n - each.psi_cold.size), "edge") for each in percepts])
-    warm = np.stack([np.pad(each.psi_warm, (0, n - each.psi_warm.size), "edge") for each in percepts])
+    cold = np.stack([held(each.psi_cold, n) for each in percepts])
+    warm = np.stack([held(each.psi_warm, n) for each in percepts])
     return cold, warm, dt

@@ -1,15 +1,9 @@
 """Tissue: depths of the receptors, effusivity of living tissue, contact under a thermode."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from ..constants import SHARE, Both, constant
 from .mechanism import Mechanism
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,11 +21,3 @@ class Tissue(Mechanism):
         """Depths of the receptors below the face of skin with a stratum corneum so thick."""
         above_m = self.corneum_share * corneum_m
         return Both(above_m + self.depth_m.cold, above_m + self.depth_m.warm)
-
-
-def depth_keys(rig: Rig, depths_m: Both[float]) -> dict[str, float | str]:
-    """Keys of a rig's skin with receptors at depths below its face; none where the rig places its own."""
-    if rig.skin.own:
-        return {}
-    cold_mm, warm_mm = (1e3 * depth for depth in depths_m)
-    return {"skin.depth_from": "surface", "skin.cold_receptor_mm": cold_mm, "skin.warm_receptor_mm": warm_mm}

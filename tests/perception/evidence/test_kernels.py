@@ -8,8 +8,8 @@ import pytest
 
 from thermicon.perception import Observer
 from thermicon.perception.experiments.laboratory import SHARES, Laboratory, samples_of
+from thermicon.perception.experiments.tasks import psychometric
 from thermicon.perception.kernels import crossing as kernels
-from thermicon.perception.kernels.crossing import psychometric
 from thermicon.perception.observer.channels import CHANNELS, Channel
 from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.mechanisms.summation import Summation
@@ -82,8 +82,8 @@ def test_lanes_and_steps_can_be_chosen_freely() -> None:
 
 
 def test_sizes_at_shares_are_read_between_and_beyond() -> None:
-    reported, logs = np.array([[0.0, 0.25, 0.75, 0.8], [0.5, 0.5, 0.75, 1.0]]), np.empty((2, 2))
-    psychometric(reported, np.arange(4.0), np.array([0.5, 0.9]), logs)
+    reported = np.array([[0.0, 0.25, 0.75, 0.8], [0.5, 0.5, 0.75, 1.0]])
+    logs = psychometric(reported, np.arange(4.0), np.array([0.5, 0.9]))
     np.testing.assert_allclose(logs[0], [1.5, 3.1], atol=1e-6)
     assert logs[1, 0] == pytest.approx(2.0, abs=0.01)
 
