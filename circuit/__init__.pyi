@@ -9,7 +9,7 @@ from .solver.batch import simulate_many as simulate_many
 from .solver.inverse import design as design
 from .delivery.nearest import nearest_reachable as nearest_reachable
 from .safety.gate import gate as gate, Gate as Gate
-from .safety.session import SessionPlan as SessionPlan
+from .safety.session_plan import SessionPlan as SessionPlan
 from .safety.session import Session as Session
 from .safety.sessionplay import play_session as play_session
 from .delivery.device import Device as Device

@@ -81,7 +81,7 @@ def fit(
 
     Examples
     --------
-    >>> from thermicon.circuit.fitting.laboratory import synthetic_log
+    >>> from thermicon.circuit.fitting.synthetic_log import synthetic_log
     >>> rig = Rig.load("thenar")
     >>> log = synthetic_log(rig.with_(**{"contact.resistance_m2K_per_W": 7e-4}), seed=1)
     >>> fitted = fit(log, rig, free=["contact.resistance_m2K_per_W", "module.resistance_ohm"])

@@ -15,12 +15,13 @@ from ..solver.drive import Drive
 from .checks import Check, CutOff, Demands, PolarityCheck, Scenario, SingleFault, colour_of, findings_of
 from .current import CurrentPlant, CurrentPlay
 from .ensemble import Ensemble
+from .exposure import cem43_min
 from .held import BEYONDS_K, around_C, held_C, stays
 from .plant import Single
 from .repeated import LONGEST_PAUSE_S, PAUSE_STEP_S, PRACTICAL_S, Repeating, lengthened_s
 from .single_faults import STUCK_SHARES, Faulty
 from .starts import Beginning
-from .tally import HOTTEST_C, WATCHED, Tally, cem43_min
+from .tally import HOTTEST_C, WATCHED, Tally
 
 TEST_A, TEST_S = 0.3, 2.0
 """A current small enough for any module and skin, for long enough to be seen by any thermistor."""

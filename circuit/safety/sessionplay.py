@@ -32,9 +32,11 @@ from ..solver.trace import Trace
 from .checks import Check, Judged, worst_of
 from .current import CurrentPlant, CurrentPlay
 from .ensemble import Ensemble
+from .exposure import cem43_min, henriques
 from .plant import Single
-from .session import Session, SessionError, SessionPlan, SessionPlay, check_length
-from .tally import WATCHED, Tally, cem43_min, henriques
+from .session import Session, SessionPlay
+from .session_plan import SessionError, SessionPlan, check_length
+from .tally import WATCHED, Tally
 from .verdict import SafetyVerdict, checks_of
 
 TRACKINGS = ("replay", "display")

@@ -15,7 +15,8 @@ from thermicon.perception.criteria import MOST_ICONS
 from ..figures.compare_figure import compare_figure
 from ..files.outputs import check_separate
 from ..files.trace_files import Curves, TraceFileError, align, curves_of, differences, quantity, read_curves
-from ..messages import load_rig, note, progress_bar, usage
+from ..loading import load_rig
+from ..messages import note, progress_bar, usage
 from ..report.run_report import Comparison, compare_report, outcome_text
 from ..report.sets_report import sets_report
 from ..report.terminal import show

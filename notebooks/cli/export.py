@@ -17,7 +17,8 @@ from thermicon.icons.model.arguments import advised
 from thermicon.icons.number_text import number
 
 from ..files.exporting import felt_in, others
-from ..messages import BAD_INPUT, DEFAULT_RIG, OPTIONS, REFUSED, MissingArgument, note, progress_bar, usage
+from ..loading import DEFAULT_RIG
+from ..messages import BAD_INPUT, OPTIONS, REFUSED, MissingArgument, note, progress_bar, usage
 from ..report.blocks import grid
 from ..report.gate_words import CAUTION, gate_words, spread_text, steps_of, warning_lines
 from ..report.terminal import show

@@ -74,7 +74,7 @@ def fit_command(
     if plan and (output or figure.figure):
         raise usage("prints a table only; leave out -o and --figure", "--plan")
     if plan:
-        from thermicon.circuit.fitting.laboratory import plan as expect
+        from thermicon.circuit.fitting.synthetic_log import plan as expect
 
         show(plan_report(expect(rig.load(), keys, offset_K=offset, fixed_skin=fixed_skin)))
         return

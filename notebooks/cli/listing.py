@@ -11,7 +11,8 @@ from thermicon.icons.atomic import OutputError
 from thermicon.icons.number_text import number
 
 from ..files.outputs import check_output
-from ..messages import load_rig, note, usage
+from ..loading import load_rig
+from ..messages import note, usage
 from ..report.blocks import grid
 from ..report.terminal import show
 from .options import CrowdOptions, RigOptions, flag, opt, read_set, write_text

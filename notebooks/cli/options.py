@@ -22,7 +22,8 @@ from thermicon.perception.criteria import MOST_ICONS
 
 from ..figures.style import SCREEN, Look, read_width_mm
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output
-from ..messages import check_changes, check_draws, load_observer, load_rig, note, usage
+from ..loading import check_changes, check_draws, load_observer, load_rig
+from ..messages import note, usage
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -211,7 +212,7 @@ class CrowdOptions(ObserverOptions):
 
     def draws(self, model: ObserverModel) -> int:
         """The number of draws: as many as were asked for, or the usual number, or as many as there are."""
-        from thermicon.perception.identification.laboratory import DRAWS
+        from thermicon.perception.identification.new_laboratory import DRAWS
 
         return check_draws(model, self.intervals, "--intervals", DRAWS)
 

@@ -14,7 +14,8 @@ import typer
 from thermicon.perception.criteria import MOST_ICONS
 
 from ..files.outputs import STDOUT, check_output, check_separate
-from ..messages import check_draws, fail, note, progress_bar, usage
+from ..loading import check_draws
+from ..messages import fail, note, progress_bar, usage
 from ..report.following import after_ranking
 from ..report.rank_report import doubt_report, rank_report, rules_report
 from ..report.terminal import show

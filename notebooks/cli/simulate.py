@@ -265,7 +265,7 @@ def session_file(
 ) -> None:
     """Simulate a session with the icons of a file, in the order of a file or shuffled; print and write the report."""
     from thermicon.circuit import SessionPlan, play_session
-    from thermicon.circuit.safety.session import order_text, read_order
+    from thermicon.circuit.safety.session_plan import order_text, read_order
 
     if output is not None:
         check_output(output, (*TRACE_SUFFIXES, NUMBERS, ORDER), "a session")

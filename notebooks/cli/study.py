@@ -10,7 +10,8 @@ import typer
 
 from thermicon.icons.number_text import count_of, number
 
-from ..messages import REFUSED, note, progress_bar, warn_of_rig
+from ..loading import warn_of_rig
+from ..messages import REFUSED, note, progress_bar
 from ..report.gate_words import CAUTION
 from .options import RigOptions, command_text, out
 

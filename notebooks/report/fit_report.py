@@ -12,8 +12,8 @@ from .blocks import Block, Grid, Text, grid
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
-    from thermicon.circuit.fitting.laboratory import Forecast
     from thermicon.circuit.fitting.rig_fit import RigFit
+    from thermicon.circuit.fitting.synthetic_log import Forecast
 
 PLAN_HEAD = (
     "Half widths of the 95 % intervals to expect from one log of the shipped calibration drive, with 10 independent "

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from thermicon.circuit import Device, Export, Rig, Session, SessionPlan, export, play_session, simulate_current
+from thermicon.circuit.safety.exposure import cem43_min
 from thermicon.circuit.safety.sessionplay import WorstCase, drive_of, worst_case_of
-from thermicon.circuit.safety.tally import cem43_min
 from thermicon.icons import Icon
 from thermicon.icons.model.arguments import advised
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from importlib import resources
 from typing import Any
 
-from thermicon.circuit.safety.session import LONGEST_S, MOST_PLAYS
+from thermicon.circuit.safety.session_plan import LONGEST_S, MOST_PLAYS
 
 from .orders import orders_of
 from .study_file import Study, StudyError, labels_of

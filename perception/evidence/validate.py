@@ -13,7 +13,7 @@ from thermicon.circuit.records import RecordTable
 from thermicon.icons.drawn import Tabled
 from thermicon.icons.model.arguments import checked
 
-from ..identification.laboratory import DRAWS
+from ..identification.new_laboratory import DRAWS
 from ..observer.channels import VARIABLES, Variable
 from ..observer.observer import load_thresholds
 from .baseline import nearer_of

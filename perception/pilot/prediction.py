@@ -18,7 +18,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..experiments.measure import Condition
-from ..identification.laboratory import COVER
+from ..identification.new_laboratory import COVER
 from .measurement_likelihood import SimulatedMeasurements, log_errors, person_covariance, shared_covariance
 from .measurements_file import Measurements
 from .playing import Confusions

@@ -14,7 +14,7 @@ from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import checked
 
 from ..identification.carry_over import prepare_task
-from ..identification.laboratory import DRAWS, Nominal, new_laboratory
+from ..identification.new_laboratory import DRAWS, Nominal, new_laboratory
 from ..identification.population import RATE_HZ, run_end_s
 from ..identification.task import USUAL, Task
 from ..kernels.parallel import Progress, step_counter
@@ -22,7 +22,7 @@ from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..sensation.percept import perceive
 from .batches import TRIALS, Job, collect_batches
 from .ranking import Ranking
-from .rules import rig_rules
+from .rules_of_thumb import rig_rules
 from .scores import assemble, objection, worst_of
 
 

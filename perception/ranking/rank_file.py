@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..identification.laboratory import NEW_LABORATORY
+from ..identification.new_laboratory import NEW_LABORATORY
 from .assumptions import doubts
 
 if TYPE_CHECKING:
-    from ..identification.laboratory import NewLaboratory
+    from ..identification.new_laboratory import NewLaboratory
     from .ranking import Ranking
     from .scores import IconScore
 

@@ -16,14 +16,14 @@ from thermicon.icons.number_text import count_of
 
 from ..arrays import Array
 from ..identification.carry_over import CarryOver
-from ..identification.laboratory import NewLaboratory, interval_of
 from ..identification.map import PerceptualMap
+from ..identification.new_laboratory import NewLaboratory, interval_of
 from ..identification.task import Task
 from ..observer.observer import MemoryForm
 from ..observer.observer_model import Crowd, ObserverModel
 from .assumptions import Assumptions, assumptions_of
 from .batches import Job, PooledResult
-from .rules import RuleResult
+from .rules_of_thumb import RuleResult
 from .scores import IconScore, PairScore, counted, disagreements
 
 PERCENTAGE_POINT = 0.01

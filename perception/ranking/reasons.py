@@ -24,7 +24,7 @@ from ..observer.channels import CHANNELS, Channel, MemoryForm
 from ..observer.observer import Observer
 from ..sensation import features
 from ..sensation.percept import Percept
-from .rules import load_rules
+from .rules_of_thumb import load_rules
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace

@@ -24,7 +24,7 @@ from ..sensation.features import attack_K_per_s, delay_s, peak_change_K
 from ..sensation.percept import Percept
 from .batches import PooledResult
 from .reasons import DistanceComponent, components_of, pair_reasons
-from .rules import DISTINGUISHABLE, OURS, RuleResult, icon_rules, pair_rules
+from .rules_of_thumb import DISTINGUISHABLE, OURS, RuleResult, icon_rules, pair_rules
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace

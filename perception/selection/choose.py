@@ -16,7 +16,7 @@ import numpy as np
 from thermicon.icons.model.arguments import checked
 
 from ..identification.carry_over import CarryOver, task_among
-from ..identification.laboratory import DRAWS, NewLaboratory, Nominal, new_laboratory
+from ..identification.new_laboratory import DRAWS, NewLaboratory, Nominal, new_laboratory
 from ..identification.population import RATE_HZ
 from ..kernels.parallel import Progress, step_counter
 from ..observer.observer_model import Crowd, ObserverModel

@@ -18,7 +18,7 @@ from thermicon.icons.drawn import Drawn, Tabled
 from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import checked
 
-from ..identification.laboratory import DRAWS
+from ..identification.new_laboratory import DRAWS
 from ..identification.population import run_end_s
 from ..kernels.parallel import Progress, step_counter
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords, ObserverModel

@@ -20,7 +20,7 @@ from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import checked
 
 from ..arrays import Array
-from ..identification.laboratory import DRAWS
+from ..identification.new_laboratory import DRAWS
 from ..kernels.parallel import Progress
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..ranking.rank import rank

@@ -13,7 +13,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 from tests.benchmarks.peers import CORNERS, best_of, ngspice_command, plain, run_ngspice, scipy_run
 from thermicon.circuit import Drive, Rig, fit, netlist, simulate_current
-from thermicon.circuit.fitting.laboratory import synthetic_log
+from thermicon.circuit.fitting.synthetic_log import synthetic_log
 from thermicon.circuit.solver.batch_inputs import Bank, cut, run_forward
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current

@@ -8,7 +8,7 @@ from pathlib import Path
 from thermicon.circuit import Device, Rig, read_drive, simulate_current
 from thermicon.circuit.delivery.samples import rate_of
 from thermicon.circuit.fitting.log import read_log
-from thermicon.circuit.safety.session import read_order
+from thermicon.circuit.safety.session_plan import read_order
 from thermicon.icons import load_library, parse
 from thermicon.icons.recordings.recorded import read_readings
 from thermicon.notebooks.cli.compare import _shifted

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.circuit.fitting.laboratory import synthetic_log
 from thermicon.circuit.fitting.log import Log
+from thermicon.circuit.fitting.synthetic_log import synthetic_log
 
 TRUTH = {
     "contact.resistance_m2K_per_W": 7e-4,

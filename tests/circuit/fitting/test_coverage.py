@@ -11,11 +11,11 @@ import pytest
 from thermicon.circuit import Drive, Rig, fit, simulate_current
 from thermicon.circuit.fitting.identify import half_width
 from thermicon.circuit.fitting.keys import COMMON, CONTACT, free_keys, value_of
-from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
 from thermicon.circuit.fitting.log import Log
 from thermicon.circuit.fitting.problem import LAYER_KINDS, FitProblem, layer_priors
 from thermicon.circuit.fitting.runs import runs_of
 from thermicon.circuit.fitting.solve import covariance_of
+from thermicon.circuit.fitting.synthetic_log import calibration_icon, synthetic_log
 from thermicon.circuit.solver.batch_inputs import bank_of, run_regulate
 from thermicon.circuit.solver.inverse import target_at
 from thermicon.circuit.solver.steady import steady_state

@@ -8,13 +8,13 @@ import pytest
 from thermicon.circuit import Rig, Trace, fit, simulate
 from thermicon.circuit.fitting.identify import half_width
 from thermicon.circuit.fitting.keys import FitError
-from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
 from thermicon.circuit.fitting.log import Log, LogError
 from thermicon.circuit.fitting.notes import milli
 from thermicon.circuit.fitting.overlay import best_shift_s, overlay
 from thermicon.circuit.fitting.rig_fit import RigFit
 from thermicon.circuit.fitting.runs import Channel
 from thermicon.circuit.fitting.solve import alike, huber
+from thermicon.circuit.fitting.synthetic_log import calibration_icon, synthetic_log
 
 from .conftest import TRUTH, altered
 

@@ -14,12 +14,12 @@ from thermicon.circuit.delivery.device import device_names
 from thermicon.circuit.delivery.formats import format_names, load_format
 from thermicon.circuit.fitting.identify import FittedParameter, cures, identified
 from thermicon.circuit.fitting.keys import COMMON, CONTACT, free_keys
-from thermicon.circuit.fitting.laboratory import calibration_icon, plan, synthetic_log
 from thermicon.circuit.fitting.log import Log, read_log
 from thermicon.circuit.fitting.problem import LAYER_KINDS, FitProblem, changed_layers
 from thermicon.circuit.fitting.rig_fit import RigFit
 from thermicon.circuit.fitting.runs import runs_of
 from thermicon.circuit.fitting.solve import Solution, spreads
+from thermicon.circuit.fitting.synthetic_log import calibration_icon, plan, synthetic_log
 from thermicon.circuit.rig.rig import rig_names
 
 from .conftest import TRUTH, altered

@@ -11,11 +11,11 @@ from tests.builders import messages
 from thermicon.circuit import Rig
 from thermicon.circuit.fitting.fit import fit
 from thermicon.circuit.fitting.keys import FitError, fittable, free_keys, value_of
-from thermicon.circuit.fitting.laboratory import write_log
 from thermicon.circuit.fitting.log import Log, LogError, read_log
 from thermicon.circuit.fitting.overlay import aligned, check_clocks, check_sensors
 from thermicon.circuit.fitting.problem import FitProblem
 from thermicon.circuit.fitting.runs import runs_of
+from thermicon.circuit.fitting.synthetic_log import write_log
 
 from .conftest import altered
 

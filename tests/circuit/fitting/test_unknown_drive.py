@@ -7,10 +7,10 @@ from thermicon.circuit import Rig, fit
 from thermicon.circuit.fitting.between import noise_sd, one_phase, tells_all, unknown_display
 from thermicon.circuit.fitting.forward import steady_level
 from thermicon.circuit.fitting.keys import COMMON, CONTACT, FitError, free_keys
-from thermicon.circuit.fitting.laboratory import synthetic_log
 from thermicon.circuit.fitting.log import Log, LogError
 from thermicon.circuit.fitting.problem import FitProblem
 from thermicon.circuit.fitting.runs import runs_of
+from thermicon.circuit.fitting.synthetic_log import synthetic_log
 from thermicon.circuit.fitting.whiten import shared
 
 from .conftest import TRUTH, altered

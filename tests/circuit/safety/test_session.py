@@ -8,9 +8,9 @@ import pytest
 
 from thermicon.circuit import Drive, Limits, Rig, SessionPlan, play_session, simulate, simulate_current
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.safety.session import LONGEST_S, MOST_PLAYS, SessionError, order_text, read_order
+from thermicon.circuit.safety.exposure import cem43_min, henriques
+from thermicon.circuit.safety.session_plan import LONGEST_S, MOST_PLAYS, SessionError, order_text, read_order
 from thermicon.circuit.safety.sessionplay import drive_of
-from thermicon.circuit.safety.tally import cem43_min, henriques
 from thermicon.circuit.safety.verdict import energy_J, judge_safety, summarise
 from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import IconSet, load_library, parse, read_cue

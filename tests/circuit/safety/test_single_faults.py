@@ -15,12 +15,13 @@ from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.demanded import TEST_A, TEST_S, dose_time_s, polarity_check
 from thermicon.circuit.safety.display import DisplayPlant
 from thermicon.circuit.safety.ensemble import Ensemble, between
+from thermicon.circuit.safety.exposure import cem43_min
 from thermicon.circuit.safety.gate import Gate, gate_set
 from thermicon.circuit.safety.held import around_C, held_C
 from thermicon.circuit.safety.repeated import Repeating
 from thermicon.circuit.safety.single_faults import Faulty, Moments
 from thermicon.circuit.safety.starts import Beginning, Starts
-from thermicon.circuit.safety.tally import WATCHED, Tally, cem43_min
+from thermicon.circuit.safety.tally import WATCHED, Tally
 from thermicon.circuit.solver.batch_inputs import State
 
 THENAR = Rig.load("thenar")

@@ -10,7 +10,8 @@ from scipy.integrate import quad
 
 from thermicon.circuit import Limits
 from thermicon.circuit.safety.checks import Check, Scenario, worst_of
-from thermicon.circuit.safety.tally import HOTTEST_C, WATCHED, Tally, cem43_min, henriques, worst_of_lanes
+from thermicon.circuit.safety.exposure import cem43_min, henriques
+from thermicon.circuit.safety.tally import HOTTEST_C, WATCHED, Tally, worst_of_lanes
 
 LIMITS = Limits.shipped()
 TIME = np.linspace(0.0, 20.0, 2001)

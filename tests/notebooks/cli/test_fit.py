@@ -8,7 +8,7 @@ import pytest
 from tests.builders import missing
 from tests.notebooks.conftest import Cli
 from thermicon.circuit import Rig
-from thermicon.circuit.fitting.laboratory import synthetic_log, write_log
+from thermicon.circuit.fitting.synthetic_log import synthetic_log, write_log
 
 CONTACT, SEEBECK, OHM = "contact.resistance_m2K_per_W", "module.seebeck_V_per_K", "module.resistance_ohm"
 RATE = ("--set", "driver.update_Hz=20")

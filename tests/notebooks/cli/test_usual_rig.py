@@ -8,7 +8,8 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import read_cue
 from thermicon.notebooks import Workbench
-from thermicon.notebooks.messages import be_quiet, warn_of_rig
+from thermicon.notebooks.loading import warn_of_rig
+from thermicon.notebooks.messages import be_quiet
 from thermicon.notebooks.study.build import read_materials
 from thermicon.perception import rank
 

@@ -7,7 +7,7 @@ from matplotlib.collections import PathCollection
 
 from thermicon.circuit import Rig, fit, simulate
 from thermicon.circuit.fitting.fit_figure import fit_figure
-from thermicon.circuit.fitting.laboratory import synthetic_log
+from thermicon.circuit.fitting.synthetic_log import synthetic_log
 from thermicon.circuit.solver import draw as circuit_draw
 from thermicon.icons import load_library, parse
 from thermicon.notebooks import overview

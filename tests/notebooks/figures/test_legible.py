@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from tests.legible import troubles
 from tests.notebooks.conftest import Cli
 from thermicon.circuit import Rig
-from thermicon.circuit.fitting.laboratory import synthetic_log, write_log
+from thermicon.circuit.fitting.synthetic_log import synthetic_log, write_log
 
 FEW = "--people 2 --intervals 0"
 COMMANDS = [

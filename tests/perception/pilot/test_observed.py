@@ -10,7 +10,7 @@ from thermicon.circuit import Rig
 from thermicon.circuit.records import RecordError
 from thermicon.icons import IconSet
 from thermicon.perception import rank
-from thermicon.perception.identification.laboratory import DRAWS
+from thermicon.perception.identification.new_laboratory import DRAWS
 from thermicon.perception.observer.constants import BETWEEN_LABORATORIES
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import Observer

@@ -14,7 +14,7 @@ from thermicon.icons import parse
 from thermicon.perception import Observer, Percept, perceive
 from thermicon.perception.identification.episodes import PARTS, remembered
 from thermicon.perception.ranking.reasons import DistanceComponent, components_of, pair_reasons
-from thermicon.perception.ranking.rules import load_rules
+from thermicon.perception.ranking.rules_of_thumb import load_rules
 from thermicon.perception.sensation.features import attack_K_per_s, delay_s, excursion_K, peak_change_K
 
 MESSAGES = messages(__file__)["reasons"]

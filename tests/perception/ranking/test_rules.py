@@ -5,7 +5,7 @@ import pytest
 from tests.builders import messages, steps
 from thermicon.circuit import Rig, simulate
 from thermicon.perception import Observer, perceive
-from thermicon.perception.ranking.rules import (
+from thermicon.perception.ranking.rules_of_thumb import (
     DISTINGUISHABLE,
     RuleResult,
     icon_rules,
