@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import os
 import pickle
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
+# The matrices here are small: further threads of linear algebra only wait, busily.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 # The check of IRIs in jsonschema, which no test needs, builds 38 grammars on import: 5 s for each process.
 sys.modules.setdefault("rfc3987_syntax", cast(ModuleType, None))
 
@@ -34,6 +38,11 @@ hypothesis.settings.load_profile("steady")
 def pytest_xdist_auto_num_workers() -> int:
     """One process more than there are cores, since some tests wait for servers and browsers."""
     return (os.cpu_count() or 1) + 1
+
+
+def pytest_collection_finish() -> None:
+    """What five thousand tests are made of stays: looking for garbage in it again and again takes time."""
+    gc.freeze()
 
 
 DEBIAN_PACKAGE = {"cc": "gcc", "chromium": "chromium", "ngspice": "ngspice"}
