@@ -7,6 +7,7 @@ import pytest
 
 from tests.builders import messages
 from tests.circuit.delivery.one_drive import icon_of, prepare, worst_case
+from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Drive, Rig
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.formats import FormatError, load_format
@@ -37,7 +38,7 @@ def amp(tmp_path: Path) -> Device:
 
 
 def strong() -> Rig:
-    return FEWER.with_(**{"driver.current_limit_A": 6.0, "driver.update_Hz": 1000, "driver.voltage_limit_V": 60.0})
+    return sure_rig().with_(**{"driver.current_limit_A": 6.0, "driver.update_Hz": 1000, "driver.voltage_limit_V": 60.0})
 
 
 def ready(shape: str, rig: Rig) -> Prepared:

@@ -273,7 +273,7 @@ def test_a_second_play_without_a_pause_is_too_fast_where_the_first_and_the_thirt
 
 
 def test_the_pause_that_is_judged_safe_is_no_shorter_than_the_shortest() -> None:
-    again = gate(WARM, THENAR).repeated
+    again = gate(WARM, sure_rig()).repeated
     assert again.reason is None
     assert again.shortest_pause_s is not None and again.shortest_pause_s <= again.pause_s
 
