@@ -24,9 +24,6 @@ if TYPE_CHECKING:
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
-# The matrices here are small: further threads of linear algebra only wait, busily.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-
 # The check of IRIs in jsonschema, which no test needs, builds 38 grammars on import: 5 s for each process.
 sys.modules.setdefault("rfc3987_syntax", cast(ModuleType, None))
 

@@ -17,10 +17,7 @@ from thermicon.circuit.safety.ensemble import Ensemble, row_of
 from thermicon.icons import Icon
 
 THENAR = Rig.load("thenar")
-FEWER = THENAR.with_(
-    **{f"uncertainty.{name}_relative": 0 for name in ("seebeck", "conductance", "plates", "contact_resistance")},
-    **{"uncertainty.reason": "a test in fewer corners"},
-)
+FEWER = sure_rig("thenar", "gain_relative", "ambient_K", "heat_sink_K")
 AMP = messages(__file__)["device"].replace("2.0", "6.0").replace("value = 12", "value = 16").replace("500", "1000")
 """A strong source of current."""
 TRAIN = "repeat 10 { pulse by 3 A for 40 ms; pulse by -3 A for 40 ms; hold for 20 ms }; hold for 2 s"

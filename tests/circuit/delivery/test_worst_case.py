@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.signal import lfilter
 
 from tests.circuit.delivery.one_drive import icon_of, prepare, worst_case
 from tests.circuit.delivery.replay import Skin
@@ -89,6 +88,8 @@ class TestWorstCase:
 
     def test_a_thermode_is_followed_until_it_has_arrived_and_no_longer(self) -> None:
         """A display cut short jumps to its last level: a rate that is none; one that is waited for delays recovery."""
+        from scipy.signal import lfilter
+
         thermode = Device.load("qst-tcs2")
         jump = deliver(icon_of("cool by 6 °C at 3 °C/s; hold for 1 s; step by 6 °C"), RIG, thermode)
         lagged = ways_of(jump)[-1]

@@ -182,8 +182,7 @@ def test_a_pause_that_cannot_be_is_told() -> None:
 
 @pytest.mark.slow
 def test_what_glows_again_after_five_seconds_is_refused_and_after_its_recovery_is_not() -> None:
-    fewer = {f"uncertainty.{name}_relative": 0 for name in ("seebeck", "conductance", "plates")}
-    rig = THENAR.with_(**fewer, **{"uncertainty.reason": "a test in fewer corners"})
+    rig = sure_rig("thenar", "contact_resistance_relative", "gain_relative", "ambient_K", "heat_sink_K")
     delivery = deliver(parse(HOT)["glow"], rig, Device.load("dac-16"))
     usual, soon = worst_case(delivery), worst_case(delivery, 5.0)
     assert usual.colour in ("green", "amber")
