@@ -46,7 +46,7 @@ def test_rows_coarser_than_the_driver_hold_the_truth_and_narrow_nothing(fast: Lo
 def test_slow_sensors_beside_a_fast_current_are_no_slow_log(fast: Log) -> None:
     rig, sensors = Rig.load("thenar"), np.arange(len(fast.time_s)) % 50 > 0
     slow = {name: np.where(sensors, np.nan, fast.column(name)) for name in ("display_C", "voltage_V")}
-    found = fit(every(fast, 1, **slow), rig, free=COMMON)
+    found = fit(every(fast, 1, **slow), rig, free=COMMON, fixed_skin=True)
     assert all(found[key].low < value < found[key].high for key, value in TRUTH.items()), found
     assert found.rig.uncertainty.seebeck_relative < rig.uncertainty.seebeck_relative
 
@@ -136,7 +136,7 @@ def test_without_keys_what_the_log_can_tell_is_fitted(log: Log, thenar: Rig) -> 
     quiet = Log.of(
         "display.csv", {name: log.column(name) for name in ("current_A", "display_C")} | {"time_s": log.time_s}
     )
-    both, display = fit(log, thenar), fit(quiet, thenar)
+    both, display = (fit(each, thenar, fixed_skin=True) for each in (log, quiet))
     assert both.notes[0].startswith(f"no keys were named; the logs tell best {', '.join(COMMON)}")
     assert OHM not in {item.key for item in display.parameters} or display[OHM].half_width > 5 * both[OHM].half_width
     assert not both.unidentified
