@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import os
 import pickle
@@ -34,6 +35,11 @@ hypothesis.settings.load_profile("steady")
 def pytest_xdist_auto_num_workers() -> int:
     """One process more than there are cores, since some tests wait for servers and browsers."""
     return (os.cpu_count() or 1) + 1
+
+
+def pytest_collection_finish() -> None:
+    """What five thousand tests are made of stays: looking for garbage in it again and again takes time."""
+    gc.freeze()
 
 
 DEBIAN_PACKAGE = {"cc": "gcc", "chromium": "chromium", "ngspice": "ngspice"}

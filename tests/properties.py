@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis.strategies import SearchStrategy
 
-ORDINARY_SHARE = 4
+ORDINARY_SHARE = 10
 """The ordinary suite has one in so many of the examples."""
 
 
 def for_any(*strategies: SearchStrategy[Any], examples: int) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Make a test of a property: with a quarter of the examples, and slow with all."""
+    """Make a test of a property: with a tenth of the examples, and slow with all."""
 
     def decorate(holds: Callable[..., None]) -> Callable[..., None]:
         few = examples // ORDINARY_SHARE

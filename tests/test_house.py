@@ -1,6 +1,5 @@
 """The house rules that a machine can check."""
 
-import ast
 import doctest
 import importlib
 import io
@@ -88,17 +87,16 @@ def test_no_module_is_too_long() -> None:
 
 def test_modules_open_with_one_idea() -> None:
     """Few first sentences have a semicolon, or a comma beside "and"."""
-    opened = (ast.get_docstring(ast.parse(path.read_text("utf-8"))) for path in project_files() if path.suffix == ".py")
-    firsts = [re.split(r"[.?]\s", text or "", maxsplit=1)[0] for text in opened]
-    assert sum(";" in first or (" and " in first and "," in first) for first in firsts) <= 60
+    texts = (path.read_text("utf-8") for path in project_files() if path.suffix == ".py")
+    firsts = [found[1] for text in texts if (found := re.match(r'\W*"""(.*?)(?:[.?]\s|""")', text, re.DOTALL))]
+    assert len(firsts) > 500 and sum(";" in first or (" and " in first and "," in first) for first in firsts) <= 60
 
 
 def test_no_two_classes_have_one_name() -> None:
     places = defaultdict(list)
     for path in (path for package in FLOW for path in sorted((ROOT / package).rglob("*.py"))):
-        for node in ast.parse(path.read_text(encoding="utf-8")).body:
-            if isinstance(node, ast.ClassDef):
-                places[node.name].append(f"{path.relative_to(ROOT)}:{node.lineno}")
+        for name in re.findall(r"^class (\w+)", path.read_text(encoding="utf-8"), re.MULTILINE):
+            places[name].append(str(path.relative_to(ROOT)))
     shared = [f"{name}: {', '.join(found)}" for name, found in sorted(places.items()) if len(found) > 1]
     assert not shared, "one name, one thing; rename what is not public:\n" + "\n".join(shared)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -42,20 +42,20 @@ def type_only(tree: ast.Module) -> set[int]:
     }
 
 
-def imports_of(package: str, path: Path, with_types: bool = True) -> Iterator[tuple[int, tuple[str, ...]]]:
-    """Line and full name of everything that a module imports, relative imports resolved."""
+@cache
+def imports_of(package: str, path: Path) -> list[tuple[int, tuple[str, ...], bool]]:
+    """Line and full name of everything that a module imports, relative imports resolved; whether for types alone."""
     tree = ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
-    here = ("thermicon", package, *path.relative_to(ROOT / package).parts[:-1])
-    unread = set() if with_types else type_only(tree)
+    here, found = ("thermicon", package, *path.relative_to(ROOT / package).parts[:-1]), []
+    unread = type_only(tree)
     for node in ast.walk(tree):
-        if id(node) in unread:
-            continue
         if isinstance(node, ast.Import):
-            yield from ((node.lineno, tuple(alias.name.split("."))) for alias in node.names)
+            found += [(node.lineno, tuple(alias.name.split(".")), id(node) in unread) for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             base = here[: len(here) - node.level + 1] if node.level else ()
             module = (*base, *(node.module.split(".") if node.module else ()))
-            yield from ((node.lineno, (*module, alias.name)) for alias in node.names)
+            found += [(node.lineno, (*module, alias.name), id(node) in unread) for alias in node.names]
+    return found
 
 
 def room_named(package: str, name: tuple[str, ...]) -> str | None:
@@ -85,7 +85,7 @@ def test_a_package_imports_only_itself_and_what_is_upstream(package: str) -> Non
     wrong = [
         f"{path.relative_to(ROOT)}:{line} imports {'.'.join(name)}"
         for path in sorted((ROOT / package).rglob("*.py"))
-        for line, name in imports_of(package, path)
+        for line, name, _ in imports_of(package, path)
         if name[0] in LADDER or (name[0] == "thermicon" and len(name) > 1 and name[1] in downstream)
     ]
     wrong += [
@@ -105,8 +105,8 @@ def test_a_room_imports_from_rooms_below_it(package: str) -> None:
         if path.stem == "drawn":  # the one place that asks the room of pictures, when a picture is made
             continue
         room = room_of(package, path)
-        for line, full in imports_of(package, path, with_types=False):
-            if full[:2] != ("thermicon", package):
+        for line, full, for_types in imports_of(package, path):
+            if for_types or full[:2] != ("thermicon", package):
                 continue
             name = full[2:]
             target = room_named(package, name)

@@ -184,7 +184,7 @@ def export(
     Examples
     --------
     >>> from thermicon.icons import load_library
-    >>> export(load_library("six-icons")["warming-step"], "thenar", "dac-16")
+    >>> export(load_library("six-icons")["cooling-step"], "thenar", "dac-16")
     Export(1 icon on thenar for dac-16 as csv: 2 files, ... kB)
 
     """

@@ -29,11 +29,8 @@ LAB = (
 )
 
 
-SMOKE = {
-    "test_text_and_curve_stay_in_step",  # JupyterLab
-    "test_a_view_greets_and_draws_the_first_frame",  # the canvas alone
-}
-"""The tests of this folder that belong to the ordinary suite; all others are slow, or benchmarks, which run alone."""
+SMOKE = "test_a_view_greets_and_draws_the_first_frame"
+"""The test of this folder that belongs to the ordinary suite; all others are slow, or benchmarks, which run alone."""
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest deselects what is slow
@@ -41,7 +38,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Browser tests come last: Playwright keeps an event loop running in this thread, which breaks others."""
     items.sort(key=lambda item: Path(__file__).parent in item.path.parents)
     for item in (one for one in items if Path(__file__).parent in one.path.parents):
-        if getattr(item, "originalname", item.name) not in SMOKE and not item.get_closest_marker("benchmark"):
+        if getattr(item, "originalname", item.name) != SMOKE and not item.get_closest_marker("benchmark"):
             item.add_marker(pytest.mark.slow)
 
 

@@ -16,6 +16,6 @@ CERTAIN: dict[str, object] = {**{f"uncertainty.{key}": 0 for key in KEYS}, "unce
 """The same as changes of a rig."""
 
 
-def sure_rig(name: str = "thenar") -> Rig:
-    """The rig of that name without any uncertainty."""
-    return Rig.load(name).with_(**CERTAIN)
+def sure_rig(name: str = "thenar", *but: str) -> Rig:
+    """The rig of that name without any uncertainty but these, such as `gain_relative`."""
+    return Rig.load(name).with_(**{key: value for key, value in CERTAIN.items() if key.split(".")[1] not in but})

@@ -63,9 +63,8 @@ def test_each_tutorial_leads_to_the_next() -> None:
         assert f"({after}.ipynb)" in read(name).cells[-1].source
 
 
-@pytest.mark.parametrize(
-    "name", ["01_first_icon", *(pytest.param(name, marks=pytest.mark.slow) for name in [*sorted(PICTURES)[1:], *ALONE])]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [*PICTURES, *ALONE])
 def test_a_tutorial_runs_and_shows_its_pictures(name: str, tmp_path: Path) -> None:
     notebook, began = read(name), sum(os.times()[2:4])
     outputs = executed(notebook, tmp_path)

@@ -10,7 +10,6 @@ import itertools
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.signal import lfilter
 
 from tests.circuit.delivery.independent import KELVIN, Array, Circuit, Json, Modes, worlds_of
 
@@ -284,6 +283,8 @@ class Skin:
 
     def run(self, display_C: Array, step_s: float, modes: Array, held: bool = False) -> tuple[Array, Array]:
         """Rows (rows, W, 4) under a display linear (or held) from row to row, and the modes at the end."""
+        from scipy.signal import lfilter  # its import takes a second, which not every process of the tests need spend
+
         power = self.modes.rates * step_s
         keep = np.exp(power)
         whole = np.expm1(power) / self.modes.rates
@@ -350,6 +351,8 @@ def shown(skin: Skin, ticks: Array, step_s: float, pauses: list[float], lags: tu
 
 def _lagged(display_C: Array, step_s: float, lag_s: float) -> Array:
     """First-order lag of a line that is linear from row to row."""
+    from scipy.signal import lfilter
+
     if not lag_s:
         return display_C
     keep = np.exp(-step_s / lag_s)

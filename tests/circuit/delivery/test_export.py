@@ -22,7 +22,7 @@ from thermicon.circuit.delivery.prepare import Prepared, Refusal, refusals_of
 from thermicon.circuit.program import code_digest
 from thermicon.icons import load_library, parse
 
-RIG = Rig.load("thenar")
+RIG, SURE = Rig.load("thenar"), sure_rig()
 SIX = load_library("six-icons")
 CSV = load_format("csv")
 DAC = Device.load("dac-16")
@@ -56,11 +56,11 @@ def test_what_is_safe_reached_and_faithful_is_not_refused() -> None:
 
 def test_what_is_unsafe_is_refused_and_cannot_be_packed() -> None:
     driver = {"current_limit_A": 4.0, "voltage_limit_V": 40.0, "transconductance_A_per_V": 1}
-    rig = RIG.with_(**{f"driver.{key}": value for key, value in driver.items()})
+    rig = sure_rig("thenar", "contact_resistance_relative").with_(**{f"driver.{key}": driver[key] for key in driver})
     one = prepare(FROST, rig, DAC, CSV)
     refusal = one.refusals[0]
     assert (refusal.kind, refusal.forcible) == ("unsafe", False)
-    assert str(refusal).startswith("NOT SAFE: skin surface reaches 4.358 °C at 10.26 s, with contact −30 %")
+    assert str(refusal).startswith("NOT SAFE: skin surface reaches 11.35 °C at 10.26 s, with contact −30 %")
     with pytest.raises(FormatError, match=r"frost: NOT SAFE: skin surface reaches .* below the hard limit of 15 °C"):
         pack([one], CSV)
 
@@ -223,7 +223,7 @@ class TestSidecar:
         [("dac-16", "csv"), ("closed-loop-controller", "setpoint-csv"), ("qst-tcs2", "tcs2-serial")],
     )
     def test_whether_the_target_is_reached_stands_once(self, device: str, form: str) -> None:
-        told = sidecar_of(ready(device=device, form=form), form)
+        told = sidecar_of(ready(device=device, form=form, rig=SURE), form)
         assert told["reached"] is True
         assert not {key for key in told["predicted"] if "reached" in key or "miss" in key}
         assert told["predicted"]["skin_min_C"] < 27.0

@@ -21,6 +21,7 @@ from tests.circuit.delivery.adversarial import BASES, between, some_cue, some_de
 from tests.circuit.delivery.faulted import NUISANCE, Faults, faulted
 from tests.circuit.delivery.independent import Json
 from tests.circuit.delivery.one_drive import icon_of
+from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import FormatError, load_format
@@ -138,15 +139,16 @@ def prepared(case: Json) -> tuple[Prepared, ...]:
 
 @pytest.mark.parametrize("kind", ["volts", "set-points"])
 def test_an_export_with_faults(kind: str) -> None:
-    found = by_chance(7001, kind, 300)
+    found = by_chance(7001, kind, 100)
     assert found.unsafe == []
     assert found.tried["hang", "rest"] >= 5
     assert len({start for _, start in found.tried}) >= 6
 
 
 def test_a_later_play_needs_a_longer_pause_for_its_faults_than_for_itself() -> None:
-    icons, rig, form = [load_library("six-icons")["warming-step"]], Rig.load("thenar"), load_format("csv")
-    (soon,) = prepare_set(icons, rig, Device.load("dac-16"), form, pause_s=5.0)
+    rig = sure_rig("thenar", "contact_resistance_relative", "heat_sink_K", "gain_relative")
+    icons, form = [load_library("six-icons")["warming-step"]], load_format("csv")
+    (soon,) = prepare_set(icons, rig, Device.load("dac-16"), form, pause_s=3.0)
     told = soon.verdict.to_dict()
     assert soon.verdict.colour == "red"
     assert f"the shortest safe pause is {told['shortest_pause_s']:g} s" in str(soon.verdict.reason)

@@ -7,6 +7,7 @@ import pytest
 
 from tests.builders import messages
 from tests.circuit.delivery.one_drive import icon_of, prepare, worst_case
+from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Drive, Rig
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.formats import FormatError, load_format
@@ -16,10 +17,7 @@ from thermicon.circuit.safety.ensemble import Ensemble, row_of
 from thermicon.icons import Icon
 
 THENAR = Rig.load("thenar")
-FEWER = THENAR.with_(
-    **{f"uncertainty.{name}_relative": 0 for name in ("seebeck", "conductance", "plates", "contact_resistance")},
-    **{"uncertainty.reason": "a test in fewer corners"},
-)
+FEWER = sure_rig("thenar", "gain_relative", "ambient_K", "heat_sink_K")
 AMP = messages(__file__)["device"].replace("2.0", "6.0").replace("value = 12", "value = 16").replace("500", "1000")
 """A strong source of current."""
 TRAIN = "repeat 10 { pulse by 3 A for 40 ms; pulse by -3 A for 40 ms; hold for 20 ms }; hold for 2 s"
@@ -37,7 +35,7 @@ def amp(tmp_path: Path) -> Device:
 
 
 def strong() -> Rig:
-    return FEWER.with_(**{"driver.current_limit_A": 6.0, "driver.update_Hz": 1000, "driver.voltage_limit_V": 60.0})
+    return sure_rig().with_(**{"driver.current_limit_A": 6.0, "driver.update_Hz": 1000, "driver.voltage_limit_V": 60.0})
 
 
 def ready(shape: str, rig: Rig) -> Prepared:

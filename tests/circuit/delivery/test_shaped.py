@@ -17,6 +17,7 @@ from tests.circuit.delivery.exported_files import Course, read_file, sidecar_in
 from tests.circuit.delivery.independent import UNSURE, Array
 from tests.circuit.delivery.loops_at_work import Bench, Controllers
 from tests.circuit.delivery.one_drive import changed
+from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Rig, export
 from thermicon.icons import Icon, load_library, parse
 
@@ -84,7 +85,7 @@ def test_skin_follows_the_design_by_any_loop_that_plays(icons: tuple[Icon, ...],
         judge(icon, *found[icon.name])
 
 
-RIG = Rig.load("thenar").with_(**{"driver.update_Hz": 20.0, "skin.elements": [1] * 5})
+RIG = sure_rig().with_(**{"driver.update_Hz": 20.0, "skin.elements": [1] * 5})
 
 
 def test_one_icon_by_loops_that_play_and_by_one_that_is_only_safe() -> None:

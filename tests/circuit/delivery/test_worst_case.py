@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.signal import lfilter
 
 from tests.circuit.delivery.one_drive import icon_of, prepare, worst_case
 from tests.circuit.delivery.replay import Skin
+from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Drive, Rig, gate, simulate_current
 from thermicon.circuit.delivery.controlled import _rest_s as rest_s
 from thermicon.circuit.delivery.controlled import samples_of
@@ -33,7 +33,7 @@ from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.circuit.safety.words import more_and_cure
 from thermicon.icons import load_library
 
-RIG = Rig.load("thenar")
+RIG, SURE = Rig.load("thenar"), sure_rig()
 SIX = load_library("six-icons")
 CSV = load_format("csv")
 
@@ -47,8 +47,9 @@ class TestWorstCase:
     """What every kind of device meets."""
 
     def test_open_loop_it_is_the_gate_on_what_flows(self) -> None:
-        found = ready().delivery
-        assert worst_case(found) == gate(found.delivered, RIG)
+        rig = sure_rig("thenar", "gain_relative")
+        found = ready(rig=rig).delivery
+        assert worst_case(found) == gate(found.delivered, rig)
 
     @pytest.mark.slow
     def test_a_bridge_rests_and_ends_with_means(self) -> None:
@@ -87,6 +88,8 @@ class TestWorstCase:
 
     def test_a_thermode_is_followed_until_it_has_arrived_and_no_longer(self) -> None:
         """A display cut short jumps to its last level: a rate that is none; one that is waited for delays recovery."""
+        from scipy.signal import lfilter
+
         thermode = Device.load("qst-tcs2")
         jump = deliver(icon_of("cool by 6 °C at 3 °C/s; hold for 1 s; step by 6 °C"), RIG, thermode)
         lagged = ways_of(jump)[-1]
@@ -120,8 +123,8 @@ class TestRefusals:
     """What a refusal names beside its first reason."""
 
     def test_every_hard_limit_and_a_cure(self) -> None:
-        bang = icon_of("step by 12 °C; hold for 8 s", name="bang")
-        refusal = str(prepare(bang, RIG, Device.load("dac-16"), CSV).refusals[0])
+        bang, rig = icon_of("step by 12 °C; hold for 8 s"), sure_rig("thenar", "plates_relative", "gain_relative")
+        refusal = str(prepare(bang, rig, Device.load("dac-16"), CSV).refusals[0])
         assert refusal.startswith("NOT SAFE: rate of skin temperature reaches ")
         assert refusal.count("rate of skin temperature") == 1
         assert "; also beyond hard limits: " in refusal
@@ -130,7 +133,7 @@ class TestRefusals:
 
     def test_an_unsafe_icon_is_not_told_to_use_more_current(self) -> None:
         icon = icon_of("cool by 18 °C over 0.1 s; hold for 6 s", baseline=33)
-        refusals = prepare(icon, RIG, Device.load("dac-16"), CSV).refusals
+        refusals = prepare(icon, SURE, Device.load("dac-16"), CSV).refusals
         assert [refusal.kind for refusal in refusals] == ["unsafe", "unreachable"]
         assert str(refusals[1]).endswith("; use a slower or smaller change")
 
@@ -144,12 +147,12 @@ class TestRefusals:
 class TestFollowedSetPoints:
     """A module that a controller takes along set-points, which it cannot follow at once where they jump."""
 
-    GREAT = tuple(pytest.param(change, marks=pytest.mark.slow) for change in ("cool by 6", "warm by 5"))
+    GREAT = tuple(pytest.param(RIG, change, marks=pytest.mark.slow) for change in ("cool by 6", "warm by 5"))
 
-    @pytest.mark.parametrize("change", [*GREAT, "cool by 3", "warm by 3"])
-    def test_steps_of_skin_are_not_refused_for_a_jump_that_no_module_makes(self, change: str) -> None:
+    @pytest.mark.parametrize(("rig", "change"), [*GREAT, (SURE, "cool by 3"), (SURE, "warm by 3")])
+    def test_steps_of_skin_are_not_refused_for_a_jump_that_no_module_makes(self, rig: Rig, change: str) -> None:
         shape = f"{change} °C at 3 °C/s; hold for 4 s; return at 3 °C/s"
-        found = worst_case(by_controller(shape, RIG, "skin"))
+        found = worst_case(by_controller(shape, rig, "skin"))
         assert found.safe, found.reason
         assert rate_in(found) > 3.0, "a skin that changes at 3 K/s"
 
@@ -183,7 +186,7 @@ class TestFollowedSetPoints:
 
     def test_a_baseline_beyond_a_limit_is_named_as_the_cause(self) -> None:
         icon = icon_of("warm by 1 °C at 1 °C/s", baseline=47)
-        found = worst_case(deliver(icon, RIG, Device.load("closed-loop-controller")))
+        found = worst_case(deliver(icon, SURE, Device.load("closed-loop-controller")))
         assert more_and_cure(found.findings).endswith(
             "use a baseline nearer to resting skin, since it is beyond the limit from the start"
         )
@@ -194,7 +197,7 @@ class TestFollowedSetPoints:
             "cool by 1 °C at 2 °C/s; hold for 1 s",
             "warm by 1 °C at 1 °C/s",
         )
-        first, *rest = worst_cases([by_controller(shape, RIG.with_(**SMALL)) for shape in (hot, *safe)], 0.0)
+        first, *rest = worst_cases([by_controller(shape, SURE.with_(**SMALL)) for shape in (hot, *safe)], 0.0)
         assert not first.safe
         assert all(verdict.safe for verdict in rest)
         assert len({verdict.demands.current_limit_A for verdict in rest}) == 1, "one controller plays them all"

@@ -46,7 +46,7 @@ def test_rows_coarser_than_the_driver_hold_the_truth_and_narrow_nothing(fast: Lo
 def test_slow_sensors_beside_a_fast_current_are_no_slow_log(fast: Log) -> None:
     rig, sensors = Rig.load("thenar"), np.arange(len(fast.time_s)) % 50 > 0
     slow = {name: np.where(sensors, np.nan, fast.column(name)) for name in ("display_C", "voltage_V")}
-    found = fit(every(fast, 1, **slow), rig, free=COMMON)
+    found = fit(every(fast, 1, **slow), rig, free=COMMON, fixed_skin=True)
     assert all(found[key].low < value < found[key].high for key, value in TRUTH.items()), found
     assert found.rig.uncertainty.seebeck_relative < rig.uncertainty.seebeck_relative
 
@@ -113,22 +113,16 @@ def test_without_a_current_the_display_is_the_drive(skin: Log, thenar: Rig) -> N
     assert [item.sd for item in problem.unknowns if item.kind == "offset"] == pytest.approx([0.1 * 2**0.5])  # of both
     with pytest.raises(FitError, match=r"seebeck_V_per_K: no log has a current, so that the display is the drive, and"):
         fit(alone, thenar, free=[COMMON[1]])
-    with pytest.raises(
-        FitError, match=r"resistance_ohm: rig tcs2 is a thermode, so that the display is the drive, and"
-    ):
+    with pytest.raises(FitError, match="resistance_ohm: rig tcs2 is a thermode, so that the display is the drive"):
         fit(alone, Rig.load("tcs2"), free=[OHM])
-    depth = Log.of(
-        "deep.csv",
-        {"time_s": skin.time_s, "display_C": skin.column("display_C"), "probe_deep_C": skin.column("probe_deep_C")},
-    )
+    columns = {name: skin.column(name) for name in ("display_C", "probe_deep_C")}
+    depth = Log.of("deep.csv", {"time_s": skin.time_s, **columns})
     deep = fit(depth, Rig.load("tcs2").with_(probe=[PROBE]))
     series = next(note for note in deep.notes if "in series" in note).split("have ")[1].split()
     layer = thenar.skin.layers[0]
     both = TRUTH[CONTACT] + layer.thickness_m / layer.conductivity_W_per_mK
-    assert (
-        float(series[0]) == pytest.approx(both, rel=0.3)
-        and float(series[2].strip("±")) / 100 < deep[CONTACT].half_width
-    )
+    assert float(series[0]) == pytest.approx(both, rel=0.3)
+    assert float(series[2].strip("±")) / 100 < deep[CONTACT].half_width
 
 
 def test_the_reading_of_a_probe_that_the_rig_lacks_is_named(skin: Log, thenar: Rig) -> None:
@@ -142,7 +136,7 @@ def test_without_keys_what_the_log_can_tell_is_fitted(log: Log, thenar: Rig) -> 
     quiet = Log.of(
         "display.csv", {name: log.column(name) for name in ("current_A", "display_C")} | {"time_s": log.time_s}
     )
-    both, display = fit(log, thenar), fit(quiet, thenar)
+    both, display = (fit(each, thenar, fixed_skin=True) for each in (log, quiet))
     assert both.notes[0].startswith(f"no keys were named; the logs tell best {', '.join(COMMON)}")
     assert OHM not in {item.key for item in display.parameters} or display[OHM].half_width > 5 * both[OHM].half_width
     assert not both.unidentified
@@ -159,14 +153,8 @@ def test_of_a_long_log_five_minutes_with_a_change_are_fitted(log: Log, true_rig:
     assert (run.begin_s, run.time_s[-1], len(run.time_s)) == pytest.approx((931.95, 68.0, 1361), abs=0.3)
     assert run.notes[0].endswith("to fit another part, cut it out")
     assert (run.channels[0].time_s[0], len(run.channels[0].values)) == (run.begin_s, len(run.time_s))
-    fine = Log.of(
-        "fine.csv",
-        {
-            "time_s": np.arange(100_000) / 1e3,
-            "current_A": np.repeat([0.1, 0.2], 50_000) + 0.0,
-            "display_C": np.linspace(30, 34, 100_000),
-        },
-    )
+    rows = {"current_A": np.repeat([0.1, 0.2], 50_000), "display_C": np.linspace(30, 34, 100_000)}
+    fine = Log.of("fine.csv", {"time_s": np.arange(100_000) / 1e3, **rows})
     (thin,) = runs_of([fine], true_rig)
     assert len(thin.drive) == 10_001 and len(thin.channels[0].values) <= 8000
     assert thin.drive @ np.diff(thin.time_s, append=99.999) == pytest.approx(0.1 * 50 + 0.2 * 49.999, rel=1e-6)

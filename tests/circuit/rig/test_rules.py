@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.builders import missing
-from tests.circuit.surerig import WHY
+from tests.circuit.surerig import CERTAIN, WHY
 from thermicon.circuit import Drive, Limits, Rig, gate, simulate_current
 from thermicon.circuit.rig.rigfile import RigError, SafetyTable
 from thermicon.circuit.rig.rules import is_reason, limit_table, safety_keys
@@ -63,7 +63,7 @@ def test_a_loosened_limit_carries_its_reason_everywhere(tmp_path: Path) -> None:
     assert rig.warnings == (
         f"limits of safety are loosened: skin_highest_C 42.8 °C instead of 42 °C. Reason given: {REASON}",
     )
-    said = gate(Drive([0, 1], [0.08, 0.08]), rig).to_dict()["limits"]
+    said = gate(Drive([0, 1], [0.08, 0.08]), rig.with_(**CERTAIN)).to_dict()["limits"]
     assert isinstance(said, dict)
     assert said["loosened"] == ["skin_highest_C 42.8 °C instead of 42 °C"]
     assert said["reason"] == REASON

@@ -32,7 +32,9 @@ LIGHT_COLD = LIGHT_TOUCH.with_(**{"heat_sink.temperature_C": 15.0})
 RIGS = {"hot side": HOT_SIDE, "cold side": COLD_SIDE, "light touch": LIGHT_TOUCH, "light cold": LIGHT_COLD}
 REST = Drive([0, 1], [0.08, 0.08])
 PULSE = Drive([0, 1, 1.25, 2], [0.08, 2.0, 0.08, 0.08], held=True)
-PULSED = THENAR.with_(**STRONG, **{"module.cold_plate_J_per_K": 1.5})
+PULSED = sure_rig("thenar", "contact_resistance_relative", "ambient_K", "gain_relative").with_(
+    **STRONG, **{"module.cold_plate_J_per_K": 1.5}
+)
 STEP = load_library("six-icons")["cooling-step"]
 
 
@@ -85,7 +87,7 @@ def test_the_hot_plate_and_the_rate_trip_theirs() -> None:
     (hot,) = [check for check in found.findings if check.quantity == "hot plate"]
     assert (hot.severity, hot.figures[1], hot.upper) == ("hard", "60", True)
     reason = pulsed().reason
-    assert reason.startswith("rate of skin temperature reaches −14.97 K/s at 1.22 s, with contact −30 %")
+    assert reason.startswith("rate of skin temperature reaches −11.8 K/s at 1.25 s, with contact −30 %")
     assert "below the hard limit of −10 K/s" in reason
 
 
@@ -107,7 +109,7 @@ def test_what_follows_matters() -> None:
     assert judge_safety(trace).colour == "green"
     stopped = gate(plan.drive, sure_rig(), rest_A=plan.rest_A)
     ended = Drive(plan.drive.time_s, [*plan.drive.current_A[:-1], plan.rest_A], held=True)
-    assert gate(ended, THENAR, rest_A=plan.rest_A).colour == "green"
+    assert gate(ended, sure_rig(), rest_A=plan.rest_A).colour == "green"
     assert stopped.colour == "red"
     assert all(finding.scenario == "the rig as given, then last value held" for finding in stopped.findings)
     assert "above the hard limit of 42 °C from 14." in stopped.reason, "6 s after the last sample"
@@ -124,7 +126,7 @@ def test_zero_current_drifts_to_39_degrees() -> None:
 
 
 def test_a_corner_that_heats_without_end_is_red_and_not_an_error() -> None:
-    rig = THENAR.with_(**{"uncertainty.gain_relative": 0.9})
+    rig = sure_rig().with_(**{"uncertainty.gain_relative": 0.9})
     found = gate(Drive([0, 1], [-2.5, -2.5]), rig, pause_s=60.0)
     assert found.colour == "red"
     assert "skin surface reaches 1000 °C at" in found.reason
@@ -132,7 +134,7 @@ def test_a_corner_that_heats_without_end_is_red_and_not_an_error() -> None:
 
 
 def test_limits_may_be_given_for_once() -> None:
-    tight = gate(REST, THENAR, limits=Limits.of({"skin_highest_C": 33.0}))
+    tight = gate(REST, sure_rig(), limits=Limits.of({"skin_highest_C": 33.0}))
     assert tight.colour == "red"
     assert resting().colour == "green"
     assert tight.limits.changed == ("skin_highest_C 33 °C instead of 42 °C",)
@@ -167,7 +169,8 @@ def test_a_limit_that_is_just_exceeded_reads_as_exceeded() -> None:
 def test_a_verdict_is_reached_without_the_module_of_words() -> None:
     judged = (
         "import sys; from thermicon.circuit import Drive, Rig, gate\n"
-        "found = gate(Drive([0, 1, 3, 4], [0.08, -3.0, -3.0, 0.08]), Rig.load('thenar'))\n"
+        f"rig = Rig.load('thenar').with_(**{CERTAIN})\n"
+        "found = gate(Drive([0, 1, 3, 4], [0.08, -3.0, -3.0, 0.08]), rig)\n"
         "print(found.colour, found.safe, bool(found.findings), 'thermicon.circuit.safety.words' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", judged], capture_output=True, text=True, check=True)

@@ -72,8 +72,9 @@ def test_corners_are_those_of_the_box() -> None:
 @pytest.mark.parametrize("held", [True, False])
 def test_every_lane_is_the_run_of_its_rig(held: bool) -> None:
     drive = Drive(CUE.time_s, CUE.current_A, held)
-    found = play_out(drive, THENAR, rest_A=0.05)
-    assert found.values.shape == (4, 3, 65, len(found.time_s))
+    rig = sure_rig("thenar", "contact_resistance_relative", "ambient_K", "gain_relative", "plates_relative")
+    found = play_out(drive, rig, rest_A=0.05)
+    assert found.values.shape == (4, 3, 17, len(found.time_s))
     for c, corner in enumerate(found.corners):
         gain = 1.0 + corner.gain_relative
         start = state_under_current(network_of(corner.rig), 0.05 * gain)
@@ -87,7 +88,7 @@ def test_every_lane_is_the_run_of_its_rig(held: bool) -> None:
 
 
 def test_power_off_is_zero_current_on_an_ideal_sink_and_not_on_its_own() -> None:
-    ideal = play_out(CUE, THENAR)
+    ideal = play_out(CUE, sure_rig())
     assert (ideal.values[:, 2] == ideal.values[:, 1]).all()
     own = play_out(CUE, THENAR.with_(**{f"heat_sink.{key}": value for key, value in OWN.items()}, **CERTAIN))
     apart = own.values[WATCHED.index("hot_plate_C"), 2] - own.values[WATCHED.index("hot_plate_C"), 1]

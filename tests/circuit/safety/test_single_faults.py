@@ -25,6 +25,7 @@ from thermicon.circuit.safety.tally import WATCHED, Tally
 from thermicon.circuit.solver.batch_inputs import State
 
 THENAR = Rig.load("thenar")
+UNSURE = sure_rig("thenar", "contact_resistance_relative", "ambient_K", "heat_sink_K", "gain_relative")
 LIMITS = Limits.shipped()
 CORNERS = [0, 1, 22, 43, 64]
 REST = 0.08
@@ -180,13 +181,13 @@ def test_every_play_that_is_allowed_begins_between_the_bounds_from_which_faults_
 
 @cache
 def warmed() -> Gate:
-    """A warming drive on the thenar, judged for pauses from the shortest on."""
-    return gate(WARM, THENAR, pause_s=60.0)
+    """A warming drive on a rig with an unknown contact, air, sink and gain, judged for a pause of a minute."""
+    return gate(WARM, UNSURE, pause_s=60.0)
 
 
 def test_a_first_play_after_no_power_survives_a_hang_until_the_watchdog_and_a_driver_stuck_at_any_current() -> None:
     """In all corners: what is demanded suffices, and without the rest it does not."""
-    demands, every = warmed().demands, Ensemble.of(THENAR)
+    demands, every = warmed().demands, Ensemble.of(UNSURE)
     assert demands.rest_before_first_play_s is not None
     off, cut = every.at_rest(0.0), demands.cut_off_display_C
 
@@ -214,7 +215,7 @@ def test_a_first_play_after_no_power_survives_a_hang_until_the_watchdog_and_a_dr
 
 
 def test_the_cut_off_lets_a_second_play_after_no_power_pass_in_every_corner() -> None:
-    demands, every = warmed().demands, Ensemble.of(THENAR)
+    demands, every = warmed().demands, Ensemble.of(UNSURE)
     cut, pause_s = demands.cut_off_display_C, demands.pause_at_least_s
     assert demands.rest_before_first_play_s is not None and pause_s is not None
     state = every.rest(REST, every.at_rest(0.0), demands.rest_before_first_play_s)
@@ -284,7 +285,7 @@ def test_ten_minutes_of_zero_current_count_towards_the_dose_of_a_play_and_no_mor
 
 @pytest.mark.parametrize(("sink_C", "resistance"), [(48.0, 2.0), (45.0, 0.2)])
 def test_a_heat_sink_that_burns_at_zero_current_is_red(sink_C: float, resistance: float) -> None:
-    rig = THENAR.with_(**{"heat_sink.temperature_C": sink_C, "heat_sink.resistance_K_per_W": resistance})
+    rig = sure_rig().with_(**{"heat_sink.temperature_C": sink_C, "heat_sink.resistance_K_per_W": resistance})
     found = gate(Drive([0, 1], [0.35, 0.35]), rig, pause_s=0.0)
     assert found.colour == "red"
     assert found.drift_C > 39.5
@@ -293,7 +294,7 @@ def test_a_heat_sink_that_burns_at_zero_current_is_red(sink_C: float, resistance
 
 
 def test_everything_that_is_demanded_is_in_the_verdict() -> None:
-    found = gate(COOL, THENAR, pause_s=60.0)
+    found = gate(COOL, sure_rig(), pause_s=60.0)
     demanded = found.demanded
     assert set(demanded) == {
         "watchdog_s", "cut_off_display_C", "polarity_check", "rest_before_first_play_s", "pause_at_least_s",

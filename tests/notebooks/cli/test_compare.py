@@ -1,6 +1,7 @@
 """``thermicon compare``: rigs, icons, sets, traces or logs in one table with one figure."""
 
 import re
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 
 from tests.notebooks.conftest import Cli
 from thermicon.notebooks.files.trace_files import Curves, TraceFileError, align, differences
+from thermicon.perception import rank
 
 
 def row(said: Any, name: str) -> list[str]:
@@ -47,6 +49,7 @@ def test_two_sets_without_a_common_name_are_compared_as_a_whole(
     other.write_text(
         two.read_text(encoding="utf-8").replace("cool-step", "x").replace("warm-step", "y"), encoding="utf-8"
     )
+    monkeypatch.setattr("thermicon.perception.rank", partial(rank, people=40, parameters=8))
     lines = cli.good("compare", two, other).stdout.splitlines()
     rows = {line[:22].strip(): line[22:].split() for line in lines[2:9]}
     assert rows["named correctly"][:2] == rows["named correctly"][2:]

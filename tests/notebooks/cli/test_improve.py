@@ -8,6 +8,7 @@ from typing import Any
 import pandas as pd
 import pytest
 
+from tests.builders import steps
 from tests.notebooks.conftest import Cli
 from thermicon.icons import parse
 from thermicon.perception.ranking import batches
@@ -33,9 +34,9 @@ def families(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def ranked(cli: Cli, tmp_path: Path) -> Callable[..., dict[str, Any]]:
-    def run(*more: object) -> dict[str, Any]:
+    def run(*more: object, of: object = "six-icons") -> dict[str, Any]:
         out = tmp_path / "rank.json"
-        said = cli.good("improve", "six-icons", *FEW, *more, "-o", out)
+        said = cli.good("improve", of, *FEW, *more, "-o", out)
         return {**json.loads(out.read_text(encoding="utf-8")), "words": " ".join(said.stdout.split())}
 
     return run
@@ -61,8 +62,11 @@ def test_the_json_says_what_was_chosen_within_its_limits(ranked: Callable[..., d
     assert f"{100 * own:.0f} % named correctly" in found["words"]
 
 
-def test_without_families_and_questions_every_close_pair_gets_an_edit(ranked: Callable[..., dict[str, Any]]) -> None:
-    every = ranked("--set", "contact.area_cm2=0.5")
+def test_without_families_and_questions_every_close_pair_gets_an_edit(
+    ranked: Callable[..., dict[str, Any]], tmp_path: Path
+) -> None:
+    steps(a=-6, b=-5, c=3).save(tmp_path / "steps.cue")
+    every = ranked("--set", "contact.area_cm2=0.5", of=tmp_path / "steps.cue")
     assert every["chosen"] is None
     edits = {(p["a"], p["b"]): p["edit"] for p in every["pairs"] if p["edit"] or p["no_edit"]}
     assert {(p["a"], p["b"]) for p in every["pairs"] if p["d_prime"] < 2.563} <= set(edits)
@@ -124,24 +128,14 @@ def test_a_row_for_each_number_of_icons(cli: Cli, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        (
-            ("--intervals", 4, "--up-to", 3, "--goal", "correct >= 1 % for 95 % of people, time <= 17 s"),
-            (
-                "time energy goal",
-                "The 2 that meet the goal: ",
-                "met by the best 2",
-                "✓ correct >= 1 %",
-                "✓ time <= 17 s: ",
-                "(4 draws)",
-            ),
-        ),
+        (("--intervals", 4, "--up-to", 3, "--goal", "correct >= 1 % for 95 % of people, time <= 17 s"),
+         ("time energy goal", "The 2 that meet the goal: ", "met by the best 2", "✓ correct >= 1 %",
+          "✓ time <= 17 s: ", "(4 draws)")),
         (("--intervals", 0, "--up-to", 2), ("about people alone", "milder than in a goal")),
-        (
-            ("--intervals", 4, "--up-to", 2, "--goal", "correct >= 99.9 %"),
-            ("met by none of these choices", "✗ correct >= 99.9 %: ", "missed by", "In the way: "),
-        ),
+        (("--intervals", 4, "--up-to", 2, "--goal", "correct >= 99.9 %"),
+         ("met by none of these choices", "✗ correct >= 99.9 %: ", "missed by", "In the way: ")),
     ],
-)
+)  # fmt: skip
 def test_a_goal_is_judged_at_every_number(cli: Cli, options: tuple[object, ...], told: tuple[str, ...]) -> None:
     words = " ".join(cli("improve", "six-icons", "--people", 4, *options).stdout.split())
     assert [each for each in told if each not in words] == [], words

@@ -52,7 +52,8 @@ def test_a_server_that_fails_is_told(cli: Cli, tmp_path: Path, monkeypatch: pyte
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals work differently there")
-@pytest.mark.parametrize("how", ["Ctrl-C", pytest.param("asked to end", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("how", ["Ctrl-C", "asked to end"])
 def test_a_server_starts_and_ends_and_imports_nothing_from_the_folder(tmp_path: Path, how: str) -> None:
     folder = tmp_path / "mine"
     folder.mkdir()
