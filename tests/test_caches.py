@@ -31,4 +31,4 @@ def test_each_cache_is_known_by_what_it_saves() -> None:
     found = sorted(name for room in rooms for path in (ROOT / room).rglob("*.py") for name in caches_in(path))
     listed = tomllib.loads((ROOT / "tests" / "caches.toml").read_text(encoding="utf-8"))
     assert found == sorted(listed)
-    assert [name for name, (saves_s, per_cent, _) in listed.items() if per_cent < LEAST_PER_CENT or saves_s <= 0.0] == []
+    assert [name for name, (saves_s, share, _) in listed.items() if share < LEAST_PER_CENT or saves_s <= 0.0] == []
