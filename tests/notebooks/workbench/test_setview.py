@@ -85,11 +85,12 @@ def few_people() -> Iterator[None]:
 @pytest.fixture(scope="module")
 def ranked() -> Bench:
     """Three icons, ranked to the end; tests that change it make their own."""
-    return Bench(THREE)
+    bench = Bench(THREE)
+    assert "24 people" in bench.said("status")
+    return bench
 
 
 def test_a_set_is_ranked_with_its_intervals_worst_pair_map_and_near_icons_side_by_side(ranked: Bench) -> None:
-    assert "24 people" in ranked.said("status")
     assert "in a new laboratory (95 %): " in ranked.said("scores")
     assert ranked.said("table").count("<tr>") == 4
     assert missing(["near", "nearer"], ranked.said("pair")) == []
