@@ -137,6 +137,7 @@ def prepared(case: Json) -> tuple[Prepared, ...]:
     return prepare_set(list(parse(cue)), rig, Device.load(case["device"]), load_format("csv"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["volts", "set-points"])
 def test_an_export_with_faults(kind: str) -> None:
     found = by_chance(7001, kind, 100)

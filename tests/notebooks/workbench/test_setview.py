@@ -85,12 +85,11 @@ def few_people() -> Iterator[None]:
 @pytest.fixture(scope="module")
 def ranked() -> Bench:
     """Three icons, ranked to the end; tests that change it make their own."""
-    bench = Bench(THREE)
-    assert "24 people" in bench.said("status")
-    return bench
+    return Bench(THREE)
 
 
 def test_a_set_is_ranked_with_its_intervals_worst_pair_map_and_near_icons_side_by_side(ranked: Bench) -> None:
+    assert "24 people" in ranked.said("status")
     assert "in a new laboratory (95 %): " in ranked.said("scores")
     assert ranked.said("table").count("<tr>") == 4
     assert missing(["near", "nearer"], ranked.said("pair")) == []
@@ -102,7 +101,8 @@ def test_a_set_is_ranked_with_its_intervals_worst_pair_map_and_near_icons_side_b
     assert [len(buffer) for buffer in ranked.frame[1]] == [36, 36]
 
 
-def test_a_click_shows_the_pair_with_its_reasons_and_an_edit(ranked: Bench) -> None:
+def test_a_click_shows_the_pair_with_its_reasons_and_an_edit() -> None:
+    ranked = Bench(THREE)
     place = ranked.made.labels.index
     answer = ranked.click(place("near"), place("far"))
     assert answer["seq"] == 7

@@ -78,6 +78,7 @@ def asked(own: Path) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.slow
 def test_a_toy_mechanism_is_felt_measured_inferred_and_listed(tmp_path: Path) -> None:
     for folder in ("observer", "data"):
         shutil.copytree(ROOT / "perception" / folder, tmp_path / folder)

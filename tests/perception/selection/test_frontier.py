@@ -78,6 +78,7 @@ def test_what_95_percent_reach_is_the_number_of_a_goal(six: IconSet, rig: Rig) -
     assert row["meets_goal"] is seen.goals[1].met
 
 
+@pytest.mark.slow
 def test_a_rough_table_of_few_people_comes_first_and_is_near(
     six: IconSet, rig: Rig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
