@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 # Many tests start interpreters of their own: what one has compiled to bytecode, the next need not.
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+# As in the program: threads of linear algebra would wait for cores that other processes use.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # The check of IRIs in jsonschema, which no test needs, builds 38 grammars on import: 5 s for each process.
 sys.modules.setdefault("rfc3987_syntax", cast(ModuleType, None))
@@ -33,8 +35,8 @@ hypothesis.settings.load_profile("steady")
 
 
 def pytest_xdist_auto_num_workers() -> int:
-    """One process more than there are cores, since some tests wait for servers and browsers."""
-    return (os.cpu_count() or 1) + 1
+    """Two processes more than there are cores, since some tests wait for servers and browsers."""
+    return (os.cpu_count() or 1) + 2
 
 
 def pytest_collection_finish() -> None:

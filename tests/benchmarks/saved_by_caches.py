@@ -13,7 +13,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-TIMED = 3
 lru_cache, cached_property = functools.lru_cache, functools.cached_property
 caches: "list[Counted]" = []
 
@@ -29,7 +28,7 @@ class Counted:
 
     def hit(self, compute: Callable[[], Any]) -> None:
         self.hits += 1
-        if self.timed < TIMED:
+        if self.timed < 3:
             self.timed += 1
             begin = time.thread_time()
             compute()
@@ -97,11 +96,9 @@ if __name__ == "__main__":
     functools.lru_cache, functools.cache = kept, kept(None)
     functools.cached_property = CountedProperty  # type: ignore[misc,assignment]
     atexit.register(tell, time.process_time())
-    del sys.argv[0]
-    if sys.argv[0].endswith(".py"):
-        runpy.run_path(sys.argv[0], run_name="__main__")
+    if sys.argv[1].endswith(".py"):
+        runpy.run_path(sys.argv[1], run_name="__main__")
     else:
-        sys.argv.insert(0, "thermicon")
         from thermicon.notebooks.cli.main import main
 
         main()

@@ -110,6 +110,7 @@ def test_a_plan_is_what_a_fit_then_finds() -> None:
         assert item.half_width == pytest.approx(width, rel=0.25)
 
 
+@pytest.mark.slow
 def test_rounding_is_noise_and_a_truth_out_of_reach_is_not_known(log: Log, thenar: Rig, true_rig: Rig) -> None:
     rounded = altered(log, display_C=np.round(2 * log.column("display_C")) / 2)
     coarse, fine = (fit(each, thenar, free=list(TRUTH), fixed_skin=True) for each in (rounded, log))

@@ -102,6 +102,7 @@ def test_a_log_of_another_site_leaves_what_it_cannot_say(log: Log, thenar: Rig) 
     assert any("not identified, so that the fitted rig keeps" in note and "0.00054" in note for note in found.notes)
 
 
+@pytest.mark.slow
 def test_a_combination_that_only_unknown_keys_explain_is_a_misfit(thenar: Rig) -> None:
     warm = synthetic_log(thenar.with_(**{"skin.rest_C": 34.0}), seed=3, rate_Hz=20.0)
     found = fit(warm, thenar, free=["contact.resistance_m2K_per_W", "ambient.temperature_C", "skin.rest_C"])

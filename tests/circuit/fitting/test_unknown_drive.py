@@ -30,6 +30,7 @@ def fast(true_rig: Rig) -> Log:
     return synthetic_log(true_rig, seed=3)
 
 
+@pytest.mark.slow
 def test_rows_coarser_than_the_driver_hold_the_truth_and_narrow_nothing(fast: Log) -> None:
     rig = Rig.load("thenar")
     coarse, told = fit(every(fast, 20, 3), rig, free=COMMON), fit(every(fast, 1), rig, free=COMMON)

@@ -126,6 +126,7 @@ def test_a_ranking_with_other_draws_follows_them_throughout(draws_file: Path) ->
     assert numb.to_dict()["observer"] == "numb.csv"
 
 
+@pytest.mark.slow
 def test_a_search_and_a_frontier_follow_another_observer(draws_file: Path) -> None:
     text = "cue 1; icon dip { cool by 3 K at 2 K/s }; icon glow(k in 1..4 step 1 K) { warm by k at 2 K/s }"
     searched = [search(parse(text), RIG, evaluations=10, people=4, observer=each) for each in (None, draws_file)]
