@@ -137,6 +137,7 @@ def test_a_start_that_is_not_steady(true_rig: Rig, thenar: Rig) -> None:
     assert any("log a few seconds of rest first" in note for note in fit(cut, thenar, free=KEYS).notes)
 
 
+@pytest.mark.slow
 def test_the_lag_of_a_thermistor(thenar: Rig) -> None:
     sensor = [{"name": "thermistor", "place": "display", "lag_s": 0.05}]
     rig = thenar.with_(probe=sensor)

@@ -82,6 +82,7 @@ def test_the_error_of_the_mesh_is_some_millikelvin(thenar: Rig, log: Log) -> Non
     assert not stated.mesh_error(stated.first, spreads(stated, stated.first)).any()
 
 
+@pytest.mark.slow
 def test_a_sensor_that_is_far_off_narrows_nothing(log: Log, thenar: Rig) -> None:
     found = fit(altered(log, display_C=log.column("display_C") + 2.3), thenar, free=list(TRUTH))
     before, after = thenar.uncertainty, found.rig.uncertainty

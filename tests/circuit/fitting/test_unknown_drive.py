@@ -104,6 +104,7 @@ def skin(true_rig: Rig) -> Log:
     return Log.of("skin.csv", {"time_s": log.time_s, **dict(log.columns[1:])})
 
 
+@pytest.mark.slow
 def test_without_a_current_the_display_is_the_drive(skin: Log, thenar: Rig) -> None:
     alone = Log.of("skin.csv", {"time_s": skin.time_s, **{name: skin.column(name) for name in ("display_C", "skin_C")}})
     found = fit(alone, thenar)

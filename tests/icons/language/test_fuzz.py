@@ -88,6 +88,6 @@ def examine(data: str | bytes) -> float:
     return taken
 
 
-@for_any(st.integers(0, 10**9), examples=2000)
+@for_any(st.integers(0, 10**9), examples=1000)
 def test_any_damaged_file(seed: int) -> None:
     assert examine(damaged(Random(seed))) < SLOWEST_S

@@ -109,6 +109,7 @@ def test_timing_and_warmth_run_on_every_variant(variable: Variable) -> None:
     assert rise == pytest.approx(0.0016, rel=0.1)
 
 
+@pytest.mark.slow
 def test_the_same_draws_stand_behind_every_experiment() -> None:
     """An observer with slower warm conduction is late in both."""
     lag = by(peak_lead(draws=64), "felt peak minus the skin's", "warm")
