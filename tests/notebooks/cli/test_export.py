@@ -50,7 +50,7 @@ def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Pa
         *(f"wrote 2 drives with their sidecars into {out}: cool-step.json", "to play: output each row's value"),
     ):
         assert words in said.stderr
-    assert said.stderr.splitlines()[-1].startswith("safety is a calculation, not a medical or ethical clearance")
+    assert said.stderr.splitlines()[-2].startswith("safety is a calculation, not a medical or ethical clearance")
     told = json.loads((out / "cool-step.json").read_text())
     assert set(told["perception"]["d_prime"]) == {"warm-step"}
 

@@ -71,7 +71,7 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(monkeypatch: pytest.Mon
 
 @pytest.mark.slow
 def test_an_edit_parts_a_pair_in_the_task_asked_for() -> None:
-    task, wanted = Task(gap_s=60.0), 2.0
+    task, wanted = Task(gap_s=60.0), 2.5
     found = cheapest_edit(
         rank(list(SIX), RIG, people=20, parameters=0, task=task), "warming-step", "linear-warming", wanted=wanted
     )
