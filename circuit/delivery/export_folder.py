@@ -17,7 +17,7 @@ from typing import Any
 
 from thermicon.icons.atomic import MARK, OutputError, check_folder, kept_text, stopped_cleanly
 
-CURE = "give a folder of its own, such as -o drives"
+CURE = "give a folder of its own"
 HOW = "replace=True replaces the folder"
 
 
@@ -105,7 +105,7 @@ def _check_owned(folder: Path) -> None:
     for name in _listed(folder):
         if name not in known:
             raise OutputError(
-                f"{folder / name} was not written by an export, since no sidecar lists it, and is kept; move it away, "
+                f"{folder / name} was not written by thermicon, since no sidecar lists it, and is kept; move it away, "
                 f"or {CURE}"
             )
 

@@ -328,7 +328,7 @@ class TestCall:
 
     def test_a_folder_with_files_in_it_stays_as_it_is(self, tmp_path: Path) -> None:
         (tmp_path / "notes.txt").write_text("mine")
-        for folder, words in ((tmp_path, r"notes\.txt was not written by an export, .* is kept; move it away"),
+        for folder, words in ((tmp_path, r"notes\.txt was not written by thermicon, .* is kept; move it away"),
                               (tmp_path / "notes.txt" / "run", "cannot write")):  # fmt: skip
             with pytest.raises(ExportError, match=words):
                 export(SIX["warming-step"], sure_rig(), "dac-16", folder=folder)

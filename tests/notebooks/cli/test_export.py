@@ -132,8 +132,8 @@ def test_what_is_not_reached_or_lossy_unless_forced(
     ("name", "more", "words"),
     [
         ("old.json", (), "old.json already exists and was kept; --force replaces the folder"),
-        ("warm-step.csv", (), "was not written by an export, since no sidecar lists it, and is kept; move it away, or"),
-        ("cool-step.csv", ("--force",), "cool-step.csv was not written by an export, since no sidecar lists it"),
+        ("warm-step.csv", (), "was not written by thermicon, since no sidecar lists it, and is kept; move it away, or"),
+        ("cool-step.csv", ("--force",), "cool-step.csv was not written by thermicon, since no sidecar lists it"),
     ],
 )
 def test_a_file_in_the_way_is_reported_before_anything_is_simulated(

@@ -103,7 +103,7 @@ def test_a_session_beyond_its_dose_is_refused(tmp_path: Path, cli: Cli) -> None:
     ("held", "words"),
     [
         (["study.json"], "out holds a study already and was kept; give another folder with -o"),
-        (["README.txt"], "README.txt was not written by an export, since no sidecar lists it, and is kept"),
+        (["README.txt"], "README.txt was not written by thermicon, since no sidecar lists it, and is kept"),
         (["study.json", "data/dataset_description.json"], "holds a study already"),
         (["study.json", "data/sub-A_task-quick_answers.csv"], "holds the answers of 1 participant (data/) already"),
     ],

@@ -79,7 +79,7 @@ class TestFolders:
     @pytest.mark.parametrize(
         ("prepare", "words"),
         [
-            (lambda at: (at / "sub").mkdir(), r"it contains a folder, sub, .*give a folder of its own, such as -o"),
+            (lambda at: (at / "sub").mkdir(), r"it contains a folder, sub, .*give a folder of its own"),
             (lambda at: (at / "link").symlink_to("a"), "it contains a link, link"),
             (lambda at: os.mkfifo(at / "pipe"), "it contains a device or pipe, pipe"),
         ],
@@ -154,7 +154,7 @@ class TestFiles:
         for each in ("out", "out.before"):
             publish(drive("a", b"1"), tmp_path / each)
         (tmp_path / folder / name).write_text("{}")
-        with pytest.raises(OutputError, match=rf"{folder}/{name} was not written by an export, .*move it away, or"):
+        with pytest.raises(OutputError, match=rf"{folder}/{name} was not written by thermicon, .*move it away, or"):
             publish(drive("a", b"2"), tmp_path / "out", replace=True)
         assert held(tmp_path / "out")["a.csv"] == b"1"
         assert (tmp_path / folder / name).exists()
