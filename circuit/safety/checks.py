@@ -146,7 +146,7 @@ def colour_of(findings: Sequence[Check]) -> str:
 
 
 def cures_of(findings: Sequence[Check]) -> tuple[Cure, ...]:
-    """Cures for every exceeded hard limit; another baseline, where a first play already begins beyond one."""
+    """Cures for every exceeded hard limit, or another baseline alone where a first play begins beyond one."""
     hard = hard_of(findings)
     if any(check.unit == "°C" and check.since_s == 0.0 and check.run.before is None for check in hard):
         return ("baseline",)

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from fractions import Fraction
+from functools import lru_cache
 from itertools import accumulate, pairwise
 
 from .statements import Current, Leaf, Pulse, Ramp, Return, Shape, Step, Total, Wave
@@ -111,6 +112,7 @@ def whole_periods(wave: Wave) -> bool:
     return round(periods) > 0 and abs(periods - round(periods)) <= periods / _FINE
 
 
+@lru_cache(maxsize=256)
 def one_period(shape: Shape, ratio: float) -> tuple[Point, ...]:
     """Phase (0–1) and value (±1) of the corners of a rising period; ``ratio`` is a sine's tolerance over amplitude."""
     half, quarter, one, zero = Fraction(1, 2), Fraction(1, 4), Fraction(1), Fraction(0)

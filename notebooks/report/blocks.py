@@ -9,6 +9,7 @@ import base64
 import unicodedata
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib import resources
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -118,6 +119,7 @@ def visible(text: str) -> str:
     return "".join(char for char in text if char == "\n" or unicodedata.category(char) not in ("Cf", "Cc"))
 
 
+@cache
 def environment() -> Environment:
     """The Jinja2 environment of all templates: every value is escaped and stripped of invisible characters."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined

@@ -51,7 +51,7 @@ class Posterior:
         middle = load_priors().values(load_priors().middle)
         return {name: middle[name] for name in LIMITS} if self.variable == "heat flow" else {}
 
-    @property
+    @cached_property
     def priors(self) -> Priors:
         """Priors of what is inferred: the constants and an offset for each laboratory and channel."""
         return priors_of(self.variable).without(tuple(self.fixed))
