@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
@@ -128,7 +129,7 @@ class PairScore:
         felt = of.percepts[i], of.percepts[j]
         return pair_reasons(of.traces[i], of.traces[j], felt, of.observer, of.memory, of.episodes, self.places)
 
-    @property
+    @cached_property
     def rules(self) -> tuple[RuleResult, ...]:
         """Rules of thumb on the pair."""
         i, j = self.places
