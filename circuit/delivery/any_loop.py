@@ -1,10 +1,11 @@
 """Bounds for every control loop around a module, whatever its gains, lag, delay or supply.
 
 The skin moves fastest where a loop swings from one cut-off to the other at its current limits. Every temperature of
-skin lies between those of a display held at either cut-off indefinitely, since more heat in means warmer everywhere;
-from there the driver gets stuck at its limit until the cut-off on a second sensor acts. The hot plate gets hottest on
-the way from the upper cut-off to the lower. A loop may also run to its limit from a start that is too warm, and stay
-there, where more current cools less. The worst swing was searched for, not proven; a margin covers this.
+skin lies between those of a display held at either cut-off for as long as the second one allows, since more heat in
+means warmer everywhere; from there the driver gets stuck at its limit until the cut-off on a second sensor acts. The
+hot plate gets hottest on the way from the upper cut-off to the lower. A loop may also run to its limit from a start
+that is too warm, and stay there, where more current cools less. The worst swing was searched for, not proven; a margin
+covers this.
 """
 
 from __future__ import annotations
@@ -22,19 +23,19 @@ from ..arrays import Array
 from ..safety.checks import Before, Check, Scenario, worst_of
 from ..safety.demands import CutOff
 from ..safety.ensemble import LaneDrives
-from ..safety.held import BEYOND_K, inwards
+from ..safety.fault_limits import FaultLimits
+from ..safety.held import BEYOND_K, SENSOR_K, Span, Stages
 from ..safety.single_faults import AFTER_ROWS_S, HANG_ROWS_S
 from ..safety.tally import HOTTEST_C, WATCHED, Tally
 from ..solver.batch_inputs import Bank, State, run_follow
 from ..solver.inverse import regulated
-from ..solver.network import COLD, COMPLIANCE_V, HIGHEST_A, LOWEST_A
+from ..solver.modes import modes_of
+from ..solver.network import COLD, COMPLIANCE_V, HIGHEST_A, LOWEST_A, SKIN
 from ..solver.steady import state_under_current
 from .delivered_drive import loss_limit
 from .samples import Samples
 from .temperatures import FollowingModule, rest_of_a_loop, updates_of
 
-SENSOR_K = 0.3
-"""Greatest offset of the sensors of loop and cut-off: what interchangeable thermistors promise (±0.2 K), and glue."""
 SWINGS_S = (3.0, 3.0, 1.0, 1.0, 0.3, 0.3, 0.1, 0.1)
 """For how long a loop swings to the lower, then to the upper cut-off, and so on: it arrives, stays, or turns before."""
 ROOM = 0.97
@@ -43,13 +44,13 @@ STEP_A, TRIES = 0.01, 12
 """Current limits are sought in such steps, and so often."""
 ANY_V = 1e4
 """A supply that holds no current back."""
-BEYONDS_K = ((1.0, 1.0), (1.0, 0.5), (0.5, 0.5))
-"""How far below and above what the display reaches a cut-off may be: more than its sensor may be wrong."""
+BEYONDS_K = (1.0, 0.5)
+"""How far beyond what the display reaches a cut-off may be: more than its sensor may be wrong."""
 REACTIONS_S = (0.2, 0.1, 0.05, 0.02)
 """Reactions of cut-offs that are tried, the slowest first, with the sensor's own lag."""
 WARMER = "what it reaches without a fault: a loop does not know that more current than its module's best cools less"
 
-Limits_A = tuple[float, float]
+Limits_A = Span
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,10 +67,13 @@ class AnyLoop:
         return replace(self.bank, plates=plates)
 
     def limits_A(self, cut: CutOff, plays: Sequence[Samples]) -> tuple[Limits_A, tuple[Check, ...]]:
-        """The widest current limits at which no loop moves skin too fast, or the driver's where needed, and checks."""
+        """The widest current limits at which no loop moves skin too fast, or the driver's where needed, and checks.
+
+        They are alike for both signs where the set-points need no more, so that swapped poles are no faster.
+        """
         driver = self.module.ensemble.rig.driver
         given = limits = driver.current_min_A, driver.current_max_A
-        cold, warm = (self._held_at(level) for level in (cut.low - SENSOR_K, cut.high + SENSOR_K))
+        cold, warm = self._stayed(Stages((cut.low, cut.high), (cut.low, cut.high), (cut.low, cut.high)))
         warm = replace(warm, nodes_C=np.maximum(cold.nodes_C, warm.nodes_C))
         checks = wide = (*self._swings(cut, given), *self._at_limit(cut, warm, given[1]))
         for _ in range(TRIES):
@@ -80,13 +84,22 @@ class AnyLoop:
                 break
             limits = -_whole_A(-limits[0] / max(1.0, warming)), _whole_A(limits[1] / max(1.0, cooling, hot))
             checks = (*self._swings(cut, limits), *self._at_limit(cut, warm, limits[1]))
-        slower_K = max(
-            float(np.sqrt(np.mean((self._shown(one, limits) - self._shown(one, given)) ** 2))) for one in plays
-        )
-        if slower_K <= loss_limit("receptor difference"):
+        alike_A = min(-limits[0], limits[1])
+        if alike_A < max(-limits[0], limits[1]) and self._suffices((-alike_A, alike_A), given, plays):
+            return (-alike_A, alike_A), checks
+        if self._suffices(limits, given, plays):
             return limits, checks
         cure = f", as its set-points need; a driver.current_limit_A of {min(-limits[0], limits[1]):g} A slows them"
         return given, tuple(replace(check, run=replace(check.run, way=f"{check.run.way}{cure}")) for check in wide)
+
+    def _suffices(self, limits_A: Limits_A, given_A: Limits_A, plays: Sequence[Samples]) -> bool:
+        """Whether set-points are followed as well within limits as within the driver's own."""
+        loss_K = loss_limit("receptor difference")
+        for play in plays:
+            slower_K = self._shown(play, limits_A) - self._shown(play, given_A)
+            if float(np.sqrt(np.mean(slower_K**2))) > loss_K:
+                return False
+        return True
 
     def _shown(self, play: Samples, limits_A: Limits_A) -> Array:
         """The display of the rig as given that its loop takes along set-points within current limits."""
@@ -141,41 +154,54 @@ class AnyLoop:
         return (*(check for check in tally.checks() if check.quantity == "hot plate"), stays)
 
     def cut_off(
-        self, reach_C: tuple[float, float], limits_A: Limits_A, used_A: Limits_A
-    ) -> tuple[CutOff, Limits_A, tuple[Check, ...]]:
-        """The slowest cut-off around what the display reaches that holds every temperature; current limits may come
-        down half-way to what is used.
+        self, every: Sequence[Stages], limits_A: Limits_A, used_A: Limits_A, may: FaultLimits
+    ) -> tuple[CutOff, Stages, Limits_A, tuple[Check, ...]]:
+        """The slowest cut-off, of several, that holds every temperature; current limits may come down half-way to what
+        is used.
         """
-        hard = [rule for rule in self.module.ensemble.rig.limits.rules if rule.severity == "hard"]
-        ends = {rule.upper: rule.limit for rule in hard if rule.quantity == "display" and rule.above_C is None}
-        half = [0.5 * (limit + used) for limit, used in zip(limits_A, used_A, strict=True)]
-        narrow_A = -_whole_A(-max(limits_A[0], half[0])), _whole_A(min(limits_A[1], half[1]))
-        edges = [
-            (max(ends[False], reach_C[0] - below), min(ends[True], reach_C[1] + above)) for below, above in BEYONDS_K
-        ]
-        begun = {edge: [self._held_at(level) for level in (edge[0] - SENSOR_K, edge[1] + SENSOR_K)] for edge in edges}
-        for reaction, edge, within_A in itertools.product(REACTIONS_S, edges, (limits_A, narrow_A)):
-            checks = self._stuck(begun[edge], within_A, reaction)
+        narrow_A = narrowed_A(limits_A, used_A)
+        begun = [self._stayed(stages) for stages in every]
+        for reaction, number, within_A in itertools.product(REACTIONS_S, range(len(every)), (limits_A, narrow_A)):
+            checks = self._stuck(begun[number], within_A, reaction, may)
             if all(check.passed for check in checks):
-                return CutOff(*inwards(*edge), reaction), within_A, checks
-        return CutOff(*inwards(*edge), 0.0), within_A, checks
+                return CutOff(*every[number].ends_C, reaction), every[number], within_A, checks
+        return CutOff(*every[-1].ends_C, 0.0), every[-1], within_A, checks
 
-    def _held_at(self, level_C: float) -> State:
-        """Each corner with its display held at a level indefinitely, or as near to it as the module can."""
-        return State.settled(self.bank.states([rest_of_a_loop(rig, level_C)[1] for rig in self.module.rigs]))
+    def _stayed(self, stages: Stages) -> tuple[State, State]:
+        """Each corner whose display a fault has held at the lower, or the upper, cut-off for as long as that allows."""
+        states = []
+        for end_C, lasting_C, wrong_K in zip(stages.ends_C, stages.lasting, (-SENSOR_K, SENSOR_K), strict=True):
+            level_C, nodes_C = end_C + wrong_K, []
+            for rig in self.module.rigs:
+                nodes = rest_of_a_loop(rig, level_C)[1].copy()
+                if stages.brief_s is not None:
+                    skin = modes_of(rig)
+                    after = skin.after(stages.brief_s, level_C, skin.steady(lasting_C + wrong_K))
+                    nodes[SKIN : SKIN + len(after)] = skin.deep_C + skin.lumps @ after
+                nodes_C.append(nodes)
+            states.append(State.settled(self.bank.states(nodes_C)))
+        return states[0], states[1]
 
-    def _stuck(self, begun: Sequence[State], limits_A: Limits_A, reaction_s: float) -> tuple[Check, ...]:
-        """Hard rules of temperature with a driver at its limit from either state, and without current afterwards."""
+    def _stuck(
+        self, begun: Sequence[State], limits_A: Limits_A, reaction_s: float, may: FaultLimits
+    ) -> tuple[Check, ...]:
+        """The limits of a fault with a driver at its limit from either state, and without current afterwards."""
         ensemble, judged = self.module.ensemble, []
         for state, current_A in zip(begun, (limits_A[1], limits_A[0]), strict=True):
             what = f"display at the cut-off, then {signed(current_A, 'g')} A for {reaction_s:g} s"
-            tally = Tally(ensemble.rig.limits, ensemble.corners, Scenario(way=what, before=Before("any")))
+            tally = Tally(may.limits, ensemble.corners, Scenario(way=what, before=Before("any")))
             rows: Array = np.linspace(0.0, reaction_s, 5)
             for start_s, amperes, times in ((0.0, current_A, rows), (reaction_s, 0.0, AFTER_ROWS_S)):
                 values, state = ensemble.hold(amperes, state, times)
-                tally.add(start_s + times, values, rates=False, sums=False)
+                tally.add(start_s + times, values, rates=False)
             judged.append(tally.checks())
-        return tuple(check for check in worst_of(judged) if check.severity == "hard" and check.unit == "°C")
+        return worst_of(judged)
+
+
+def narrowed_A(limits_A: Limits_A, used_A: Limits_A) -> Limits_A:
+    """Current limits half-way between others and what is used."""
+    half = [0.5 * (limit + used) for limit, used in zip(limits_A, used_A, strict=True)]
+    return -_whole_A(-max(limits_A[0], half[0])), _whole_A(min(limits_A[1], half[1]))
 
 
 def _whole_A(limit_A: float) -> float:

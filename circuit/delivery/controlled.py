@@ -15,18 +15,25 @@ from thermicon.icons.number_text import signed
 
 from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K
+from ..rig.rig import Rig
+from ..rig.rules import Limits
 from ..safety.checks import Check, Scenario, worst_of
-from ..safety.current import checks_of_lanes
-from ..safety.demanded import polarity_check
-from ..safety.demands import CutOff, Demands, Loop, SingleFault
+from ..safety.current import single_of_lanes
+from ..safety.demanded import inside_fault, zero_current_s
+from ..safety.demands import CutOff, Demands, Loop, PolarityCheck, SingleFault
 from ..safety.display import DisplayCourse, DisplayPlant
+from ..safety.ensemble import Ensemble
+from ..safety.fault_limits import DOSE, FaultLimits
 from ..safety.gate import Gate, gate_shown
-from ..safety.held import BEYOND_K
+from ..safety.held import SENSOR_K, HeldSkin, Span, Stages, around_C, one_stage, two_stages
 from ..safety.plant import recovery_s
+from ..safety.polarity import least_fall_K, polarity_check, test_starts
+from ..safety.shown import Stay
+from ..safety.tally import worst_of_lanes
 from ..solver.batch_inputs import Bank, run_regulate
 from ..solver.kernel_regulate import DELAY_S, KD, KI, KP, LAG_S
 from ..solver.network import ALPHA, COLD_J_PER_K, HIGHEST_A, LOWEST_A, RESISTANCE
-from .any_loop import SENSOR_K, AnyLoop, Limits_A
+from .any_loop import BEYONDS_K, AnyLoop, Limits_A, narrowed_A
 from .delivered_drive import DeliveredDrive
 from .formats.form import samples_of
 from .samples import Samples
@@ -39,6 +46,8 @@ DELAYS_S = (0.1, 0.05, 0.02, 0.01, 0.0)
 """Delays that a loop of the rig may have beside what its file states; the longest that does not swing is demanded."""
 WEAKER = 0.5
 """Share of the gains from which on a loop is judged."""
+TAKEN_OVER_S = 60.0
+"""A loop has brought a display that was without power to its baseline within this time, or is judged as if never."""
 SETTLING_S, SWING_K = 10.0, 0.2
 """How long after the last set-point a loop may swing, and by how much a second before that."""
 
@@ -46,28 +55,39 @@ SETTLING_S, SWING_K = 10.0, 0.2
 def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> tuple[Gate, ...]:
     """Check set-points that a controller around the rig's module may play in any order; PauseError, RigError."""
     rig, stuck_C = deliveries[0].rig, deliveries[0].device.interval("set-point range")
-    verdicts = gate_shown(
-        [(_beside(delivery, BESIDE_K), _beside(delivery, -BESIDE_K)) for delivery in deliveries],
-        rig, stuck_C=stuck_C, pause_s=pause_s, module=True,
-    )  # fmt: skip
+    courses = [(_beside(delivery, BESIDE_K), _beside(delivery, -BESIDE_K)) for delivery in deliveries]
+    verdicts = gate_shown(courses, rig, stuck_C=stuck_C, pause_s=pause_s, module=True)
     module, under = FollowingModule.of(looped(rig)), DisplayPlant.of(rig, stuck_C)
     loops, plays = AnyLoop(module, past_most_cooling(module.rigs)), [samples_of(delivery) for delivery in deliveries]
-    cuts, unpowered_C = [verdict.demands.cut_off_display_C for verdict in verdicts], module.unpowered_C()
-    reach_C = (
-        min(unpowered_C[0], *(cut.low + BEYOND_K for cut in cuts)),
-        max(unpowered_C[1], *(cut.high - BEYOND_K for cut in cuts)),
-    )
-    around = CutOff(reach_C[0] - BEYOND_K, reach_C[1] + BEYOND_K, 0.0)
-    limits_A, swings = loops.limits_A(around, plays)
+    unpowered_C = module.unpowered_C()
+    levels_C = [unpowered_C, *(ends_of(course) for pair in courses for course in pair)]
+    reach_C = min(low for low, _ in levels_C), max(high for _, high in levels_C)
+    limits_A, swings = loops.limits_A(CutOff(*around_C(rig.limits, reach_C), 0.0), plays)
     drives = [module.drives(play) for play in plays]
     flows = np.concatenate([drive.current_A for drive in drives], axis=1)
     used_A = min(0.0, float(flows.min())), max(0.0, float(flows.max()))
-    cut, limits_A, held = loops.cut_off(reach_C, limits_A, used_A)
+    may = FaultLimits.of(rig.limits, max(_dose_min(verdict) for verdict in verdicts))
+    skin = HeldSkin.of(rig, may)
+    lasting = skin.lasting_C()
+    inside = lasting[0] + SENSOR_K, lasting[1] - SENSOR_K
+    weakest = loops.within(narrowed_A(limits_A, used_A))
+    healthy_s = max(
+        *(_beyond_s(course, inside) for pair in courses for course in pair),
+        *(_from_no_power_s(loops, weakest, play, inside) for play in plays),
+    )
+    every = [_stages(rig.limits, skin, reach_C, lasting, healthy_s, beyond_K) for beyond_K in BEYONDS_K]
+    cut, stages, limits_A, stuck = loops.cut_off(every, limits_A, used_A, may)
     loop, swung = _judged_loop(loops, plays, limits_A, cut, (LATE_S,) if rig.controller is None else DELAYS_S)
-    failed = tuple(check for check in (*swings, *held, *swung) if not check.passed)
+    failed = tuple(check for check in (*swings, *stages.failed, *stuck, *swung) if not check.passed)
+    polarity, lost = _wiring(module, rig, plays, cut)
+    proven = Demands(
+        60.0, cut, polarity, None, None, None, (lost,),
+        held_cut_off_display_C=stages.held, current_limit_A=limits_A, loop=loop,
+    )  # fmt: skip
     judged = []
     for delivery, verdict, drive in zip(deliveries, verdicts, drives, strict=True):
-        once, repeated = worst_of([checks_of_lanes(module.ensemble, drive, rig.limits), verdict.once]), verdict.repeated
+        single = single_of_lanes(module.ensemble, drive, rig.limits)
+        once, repeated = worst_of([worst_of_lanes(single.tallies), verdict.once]), verdict.repeated
         with_module = replace(
             verdict,
             scenarios=verdict.scenarios + len(module.ensemble.corners),
@@ -75,8 +95,10 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
             once=(*once, *failed),
             repeated=replace(repeated, shortest_pause_s=None) if failed else repeated,
         )
-        demands = _demands(with_module, module, delivery, under, unpowered_C, (loop, limits_A, cut))
-        judged.append(replace(with_module, demands=demands))
+        demands = _demands(with_module, proven, _rest_s(under, delivery, unpowered_C), unpowered_C)
+        dose = _dose_min(verdict) / max(1, repeated.plays) + skin.worst_dose_min(stages)
+        zero_s = zero_current_s(module.ensemble, rig.limits, single.end, dose)
+        judged.append(replace(with_module, demands=replace(demands, zero_current_at_most_s=zero_s)))
     alone = [gate_controlled([delivery], pause_s)[0] for delivery in deliveries] if failed and len(judged) > 1 else []
     if all(verdict.safe for verdict in alone):
         return tuple(judged)
@@ -93,31 +115,73 @@ def _beside(delivery: DeliveredDrive, beside_K: float = 0.0) -> DisplayCourse:
     return DisplayCourse(f"display {signed(beside_K, '+g')} K", 1.0 / samples.rate_Hz, display)
 
 
-def _demands(
-    verdict: Gate,
-    module: FollowingModule,
-    delivery: DeliveredDrive,
-    under: DisplayPlant,
-    unpowered_C: tuple[float, float],
-    proven: tuple[Loop, Limits_A, CutOff],
-) -> Demands:
-    """Demands of set-points, and of a loop that loses its sensor or has its poles swapped."""
-    loop, limits_A, cut = proven
-    rest_s = _rest_s(under, delivery, unpowered_C)
-    start = SingleFault("unpowered loop", "green", {"display_C": unpowered_C, "rest_s": rest_s})
-    faulty = module.faulty(samples_of(delivery))
-    polarity, _ = polarity_check(faulty)
-    _, stuck = faulty.cut_off((cut.low, cut.high))
+def _dose_min(verdict: Gate) -> float:
+    """The dose of a session in min CEM43."""
+    return max(check.value for check in verdict.repeated.checks if check.quantity == DOSE)
+
+
+def ends_of(course: DisplayCourse) -> Span:
+    """Between which temperatures in °C a display is."""
+    return float(course.display_C.min()), float(course.display_C.max())
+
+
+def _beyond_s(course: DisplayCourse, inside_C: Span) -> float:
+    """For how long in s a play is beyond temperatures without a break."""
+    stay = Stay(inside_C)
+    stay.add(course.step_s * np.arange(len(course.display_C)), course.display_C[np.newaxis])
+    return stay.beyond_s
+
+
+def _from_no_power_s(loops: AnyLoop, bank: Bank, play: Samples, inside_C: Span) -> float:
+    """For how long in s the weakest loop leaves a display that was without power beyond temperatures."""
+    ensemble = loops.module.ensemble
+    own, period = ensemble.rig.controller, 1.0 / ensemble.rig.driver.update_Hz
+    assert own is not None
+    weakest = WEAKER * own.kp_A_per_K, WEAKER * own.ki_A_per_Ks, own.kd_As_per_K
+    gains = np.zeros((len(ensemble.corners), 5))
+    gains[:, [KP, KI, KD]] = np.outer(ensemble.gain, weakest)
+    gains[:, LAG_S] = own.lag_s
+    times_s = period * np.arange(round(TAKEN_OVER_S / period))
+    goals = np.full((1, len(times_s)), float(play.command[0]))
+    lanes, begun = ensemble.lanes, ensemble.at_rest(0.0).nodes_C
+    none = np.zeros_like(lanes)
+    _, display, _ = run_regulate(bank, lanes, none, period, goals, gains, np.zeros(len(lanes)), begun.copy())
+    stay = Stay(inside_C, since_s=0.0)
+    stay.add(times_s, display)
+    return stay.beyond_s
+
+
+def _stages(limits: Limits, skin: HeldSkin, reach_C: Span, lasting: Span, healthy_s: float, beyond_K: float) -> Stages:
+    """One cut-off where that suffices, else two."""
+    first = one_stage(limits, reach_C, lasting, beyond_K)
+    return two_stages(limits, skin, reach_C, lasting, healthy_s, beyond_K) if first.failed else first
+
+
+def _wiring(
+    module: FollowingModule, rig: Rig, plays: Sequence[Samples], cut: CutOff
+) -> tuple[PolarityCheck, SingleFault]:
+    """The test of the polarity from any start, and what a loop does that has lost its sensor or its polarity."""
+    every = Ensemble.of(rig)
+    faulty = [module.faulty(play, every) for play in plays]
+    starts = test_starts(every, [one.start for one in faulty], [one.moments() for one in faulty])
+    nominal = module.faulty(plays[0], every.only([0]))
+    polarity, _ = polarity_check(nominal, least_fall_K(every, starts))
+    _, stuck = nominal.cut_off((cut.low, cut.high))
     lost = SingleFault("loop lost", stuck.colour, {"harms": stuck.values["harms"], "cut_off": cut})
+    return replace(polarity, needed=True), lost
+
+
+def _demands(verdict: Gate, proven: Demands, rest_s: float | None, unpowered_C: Span) -> Demands:
+    """Demands of set-points, with what was proven of every loop."""
+    start = SingleFault("unpowered loop", "green", {"display_C": unpowered_C, "rest_s": rest_s})
+    hangs, (lost,), cut = verdict.demands.faults[0], proven.faults, proven.cut_off_display_C
+    inside = () if proven.held_cut_off_display_C is None else (inside_fault(proven.held_cut_off_display_C, cut),)
     return replace(
-        verdict.demands,
-        cut_off_display_C=cut,
-        polarity_check=replace(polarity, needed=True),
+        proven,
+        watchdog_s=verdict.demands.watchdog_s,
         rest_before_first_play_s=rest_s,
         pause_at_least_s=verdict.repeated.shortest_pause_s,
-        faults=(verdict.demands.faults[0], start, lost),
-        current_limit_A=limits_A,
-        loop=loop,
+        faults=(hangs, start, *inside, lost),
     )
 
 

@@ -22,6 +22,7 @@ from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..safety.corners import corners_of
 from ..safety.ensemble import Ensemble, LaneDrives
+from ..safety.fault_limits import FaultLimits
 from ..safety.single_faults import Faulty
 from ..safety.tally import WATCHED
 from ..solver.batch_inputs import Bank, bank_of, run_follow
@@ -172,8 +173,8 @@ class FollowingModule:
         display: Array = values[WATCHED.index("display_C"), :, -1]
         return float(display.min()), float(display.max())
 
-    def faulty(self, samples: Samples) -> Faulty:
-        """Single faults of the rig as given."""
-        nominal, drive = self.ensemble.only([0]), follow_samples(self.rigs[0], samples)
+    def faulty(self, samples: Samples, ensemble: Ensemble) -> Faulty:
+        """Single faults in some corners of what the loop sends to the rig as given."""
+        drive, limits = follow_samples(self.rigs[0], samples), ensemble.rig.limits
         rest_A = float(drive.current_A[0])
-        return Faulty(nominal, drive, rest_A, nominal.at_rest(rest_A), self.ensemble.rig.limits)
+        return Faulty(ensemble, drive, rest_A, ensemble.at_rest(rest_A), limits, FaultLimits.of(limits))

@@ -26,9 +26,10 @@ from .demands import Demands
 from .ensemble import Ensemble, LaneDrives, row_of
 from .plant import ENDING_ROWS_S, LATE_S, LATER_S, OFF_ROWS_S, Future, Plant, Single, Stretch
 from .playmap import MOST_STEPS, PlayMap, bound, least_bound, steady_cycle
+from .polarity import TEST_S, testing_A
 from .repeated import Repeating
 from .single_faults import instants, side_by_side
-from .tally import COLDEST_C, HOTTEST_C, WATCHED, Tally, worst_of_lanes
+from .tally import COLDEST_C, HOTTEST_C, WATCHED, Tally
 
 ENDINGS = ("last value held", "zero current", "power off")
 IN_THE_END = "zero current in the end"
@@ -162,8 +163,6 @@ class CurrentPlant(Plant[CurrentPlay, State]):
 
     def stopped(self, plays: Sequence[CurrentPlay], bounds: tuple[State, State]) -> tuple[State, State]:
         """Node by node: no power, instants of plays, zero current since, and the test of the polarity then."""
-        from .demanded import TEST_S, testing_A
-
         off, test_A = self.unpowered(), testing_A(self.ensemble)
         found = []
         for begun, most in zip(bounds, (np.maximum, np.minimum), strict=True):
@@ -223,7 +222,7 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         """Demands against a host that stops, a driver that is stuck, and faults of a first play."""
         from .demanded import demanded
 
-        return demanded(self, [single for (single,) in singles], recovered_s, repeating, shortest_s)
+        return demanded(self, [single for (single,) in singles], recovered_s, repeating, tallies, shortest_s)
 
 
 def _at(like: State, free_C: Array) -> State:
@@ -231,10 +230,9 @@ def _at(like: State, free_C: Array) -> State:
     return State(np.concatenate([free_C, like.nodes_C[:, -1:]], axis=1), like.sink)
 
 
-def checks_of_lanes(ensemble: Ensemble, drives: LaneDrives, limits: Limits) -> tuple[Check, ...]:
-    """Every rule in its worst scenario where each corner plays a drive of its own, from rest at its first current."""
-    play = CurrentPlay(drives, drives.current_A[:, 0])
-    return worst_of_lanes(Single.of(CurrentPlant.of(ensemble), play, limits).tallies)
+def single_of_lanes(ensemble: Ensemble, drives: LaneDrives, limits: Limits) -> Single[CurrentPlay, State]:
+    """A play in which each corner has a drive of its own, from rest at its first current."""
+    return Single.of(CurrentPlant.of(ensemble), CurrentPlay(drives, drives.current_A[:, 0]), limits)
 
 
 def zero_current_C(ensemble: Ensemble) -> Array:

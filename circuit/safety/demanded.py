@@ -1,125 +1,269 @@
-"""What hardware must prevent so that currents stay safe with a single fault, in any play after the shortest pause."""
+"""What hardware must prevent so that currents stay safe with a single fault, in any play after the shortest pause.
+
+Shorter pauses need a quicker watchdog and a quicker cut-off. Where these would be quicker than PRACTICAL_S, and are not
+with a pause in which display and skin recover, the pause is lengthened instead; so it is where a single cut-off would
+act on plays. Where no pause helps, a second cut-off is demanded (`held.py`). A set that no pause makes safe is judged
+with the longest.
+"""
+
+from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cache
+from dataclasses import dataclass, field, replace
 from itertools import repeat
 
 import numpy as np
 
-from ..arrays import Array
 from ..rig.rules import Limits
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
-from .checks import Check, Scenario, colour_of, findings_of
+from .checks import Check, colour_of
 from .current import CurrentPlant, CurrentPlay
-from .demands import CutOff, Demands, PolarityCheck, SingleFault
+from .demands import CutOff, Demands, HeldCutOff, SingleFault
 from .ensemble import Ensemble
 from .exposure import cem43_min
-from .held import BEYONDS_K, around_C, held_C, stays
+from .fault_limits import DOSE, FaultLimits
+from .held import BEYONDS_K, SENSOR_K, HeldSkin, Stages, one_stage, two_stages
 from .plant import Single
+from .polarity import TEST_S, least_fall_K, polarity_check, test_starts, testing_A
 from .repeated import LONGEST_PAUSE_S, PAUSE_STEP_S, PRACTICAL_S, Repeating, lengthened_s
+from .shown import PAUSE_ROWS_S, Shown, Span, Stay
 from .single_faults import STUCK_SHARES, Faulty
-from .starts import Beginning
+from .starts import Beginning, Starts
+from .stuck_rate import Limited, limited
 from .tally import HOTTEST_C, WATCHED, Tally
 
-OFF_S = 10.0
-"""So long the output is off before the polarity is tested."""
-TEST_A, TEST_S = 0.3, 2.0
-"""A current small enough for any module and skin, for long enough to be seen by any thermistor."""
-
-Span = tuple[float, float]
 Found = tuple[Demands, tuple[Check, ...]]
 """What the hardware must prevent, and checks that fail where it cannot."""
+Singles = Sequence[Single[CurrentPlay, State]]
+
+DISPLAY = WATCHED.index("display_C")
 
 
 def demanded(
     plant: CurrentPlant,
-    singles: Sequence[Single[CurrentPlay, State]],
+    singles: Singles,
     recovered_s: Sequence[float],
     repeating: Repeating[CurrentPlay, State],
+    tallies: Sequence[list[Tally]],
     shortest_s: float | None,
 ) -> tuple[float | None, list[Found]]:
-    """The shortest pause after which faults can be prevented in practice, and what prevents them in any play after it.
-
-    Shorter pauses need a quicker watchdog and a quicker cut-off. Where these would be quicker than PRACTICAL_S, and are
-    not with a pause in which display and skin recover, the pause is lengthened instead; so it is where a cut-off would
-    act on plays. A set that no pause makes safe is judged with the longest.
-    """
-    display = [check.value for single in singles for check in single.checks if check.quantity == "display"]
-    reach_C, faults = (min(display), max(display)), list[Faulty]()
+    """The shortest pause after which faults can be prevented in practice, and what prevents them in any play after."""
+    every = [tally for own in tallies for tally in own] + [single.tallies[0] for single in singles]
+    dose_before_min = max(float(tally.summed(DOSE).max()) for tally in every)
+    may = FaultLimits.of(repeating.limits, dose_before_min)
+    faults = []
     for single in singles:
         drive, rest_A = single.play.drive, float(single.play.rest_A)
         assert isinstance(drive, Drive)
-        faults.append(Faulty(plant.ensemble, drive, rest_A, single.start, repeating.limits))
-    held = held_C(plant.rig, repeating.limits)
+        faults.append(Faulty(plant.ensemble, drive, rest_A, single.start, repeating.limits, may))
+    once = [one.moments() for one in faults]
+    slow = limited(faults, once)
     begin_s = LONGEST_PAUSE_S if shortest_s is None else shortest_s
-    beginning = Beginning.of(repeating, begin_s, max(recovered_s))
-    starts_of = cache(beginning.after)
+    skin = HeldSkin.of(plant.rig, may)
+    search = Search(
+        singles,
+        [replace(one, limit_A=slow.limit_A) for one in faults],
+        Beginning.of(repeating, begin_s, max(recovered_s)),
+        skin,
+        skin.lasting_C(),
+        slow,
+        least_fall_K(plant.ensemble, test_starts(plant.ensemble, [single.start for single in singles], once)),
+        max(begin_s, *recovered_s),
+    ).chosen(begin_s)
+    if shortest_s is None:
+        return None, search.completed(search.in_plays(begin_s) or [], begin_s, None)
+    pause_s, in_plays = search.shortest(shortest_s)
+    return pause_s, search.completed(in_plays, pause_s, pause_s)
 
-    def after(pause_s: float) -> list[Faulty]:
-        return [replace(one, bounds=starts_of(pause_s).bounds) for one in faults]
 
-    @cache
-    def reach_of(pause_s: float) -> Span:
-        lows, highs = zip(reach_C, *(one.shown_C for one in after(pause_s)), strict=True)
-        return min(lows), max(highs)
+@dataclass(frozen=True, slots=True, eq=False)
+class Search:
+    """A search for demands on drives of a set, between pauses in s of which the longest lets all recover.
 
-    def ends(pause_s: float, beyond_K: float) -> Span:
-        return around_C(repeating.limits, reach_of(pause_s), held, beyond_K)
+    `lasting` is where the display may stay, `slow` the current limit of the driver, `fall_K` how far the display falls
+    in a test of the polarity. Cut-offs are `beyond_K` beyond what the display reaches, and `hardest` are the corners of
+    each drive in which watchdog and cut-off are tried.
+    """
 
-    longest_s = max(begin_s, *recovered_s)
-    react_s = [_resting(after(longest_s)[0], ends(longest_s, one))[0].react_within_s for one in BEYONDS_K]
-    beyond_K = BEYONDS_K[int(np.argmax(np.minimum(react_s, PRACTICAL_S)))]  # the farthest that suffices, or the slowest
-    hardest = [one.hardest(ends(begin_s, beyond_K), PRACTICAL_S) for one in after(begin_s)]
+    singles: Singles
+    faults: Sequence[Faulty]
+    beginning: Beginning[CurrentPlay, State]
+    skin: HeldSkin
+    lasting: Span
+    slow: Limited
+    fall_K: float
+    longest_s: float
+    beyond_K: float = BEYONDS_K[0]
+    hardest: Sequence[list[int]] = ()
+    _starts: dict[float, Starts[State]] = field(default_factory=dict)
+    _shown: dict[float, Shown] = field(default_factory=dict)
 
-    def holds(number: int, pause_s: float, within_s: Span) -> bool:
-        if stays(reach_of(pause_s), held):
+    @property
+    def limits(self) -> Limits:
+        """The limits of the rig, or those in their place."""
+        return self.beginning.repeating.limits
+
+    def starts(self, pause_s: float) -> Starts[State]:
+        """The states between which plays begin."""
+        if pause_s not in self._starts:
+            self._starts[pause_s] = self.beginning.after(pause_s)
+        return self._starts[pause_s]
+
+    def faulty(self, pause_s: float) -> list[Faulty]:
+        """Drives whose plays begin between the bounds of a pause."""
+        bounds = self.starts(pause_s).bounds
+        return [replace(one, bounds=bounds) for one in self.faults]
+
+    def shown(self, pause_s: float) -> Shown:
+        """What the display reaches without a fault, and for how long in s it is beyond where it may stay."""
+        if pause_s not in self._shown:
+            singles = [check.value for one in self.singles for check in one.checks if check.quantity == "display"]
+            once = Shown(min(singles), max(singles), self._rest_s())
+            later = (shown_between(one, self._healthy_C(), pause_s) for one in self.faulty(pause_s))
+            self._shown[pause_s] = Shown.of([once, *later])
+        return self._shown[pause_s]
+
+    def _healthy_C(self) -> Span:
+        """Inside of which a sensor that is wrong does not show the display beyond where it may stay."""
+        return self.lasting[0] + SENSOR_K, self.lasting[1] - SENSOR_K
+
+    def _rest_s(self) -> float:
+        """How long a first rest leaves the display beyond where it may stay, with the test of the polarity before."""
+        ensemble, longest_s = self.faults[0].ensemble, 0.0
+        for rest_A in {one.rest_A for one in self.faults}:
+            for state in self.beginning.left:
+                stay = Stay(self._healthy_C(), since_s=0.0)
+                display = ensemble.watch(rest_A, state, PAUSE_ROWS_S, ensemble.lanes, ("display_C",))[0]
+                stay.add(PAUSE_ROWS_S, display)
+                longest_s = max(longest_s, stay.beyond_s)
+        return longest_s + TEST_S if longest_s else 0.0
+
+    def stages(self, pause_s: float, beyond_K: float | None = None) -> Stages:
+        """The cut-offs around plays with a pause between them: one where the longest pause makes that suffice."""
+        beyond = self.beyond_K if beyond_K is None else beyond_K
+        shown = self.shown(pause_s)
+        first = one_stage(self.limits, shown.reach_C, self.lasting, beyond)
+        if not first.failed:
+            return first
+        if not one_stage(self.limits, self.shown(self.longest_s).reach_C, self.lasting, beyond).failed:
+            return first
+        return two_stages(self.limits, self.skin, shown.reach_C, self.lasting, shown.beyond_s, beyond)
+
+    def chosen(self, begin_s: float) -> Search:
+        """The search with cut-offs as far out as suffices for a driver stuck before a play, in the hardest corners."""
+        first = self.faulty(self.longest_s)[0]
+        react_s = [_resting(first, self.stages(self.longest_s, one).ends_C)[0].react_within_s for one in BEYONDS_K]
+        # The farthest that suffices, or the slowest.
+        beyond_K = BEYONDS_K[int(np.argmax(np.minimum(react_s, PRACTICAL_S)))]
+        ends_C = self.stages(begin_s, beyond_K).ends_C
+        hardest = [one.hardest(ends_C, PRACTICAL_S) for one in self.faulty(begin_s)]
+        return replace(self, beyond_K=beyond_K, hardest=hardest)
+
+    def suffices(self, number: int, pause_s: float, within_s: Span) -> bool:
+        """Whether a watchdog and a cut-off that act in time keep a drive safe after a pause, in the hardest corners."""
+        stages = self.stages(pause_s)
+        if stages.failed:
             return False
         if not any(within_s):
             return True
-        faulty = after(pause_s)[number].at(hardest[number])
-        cut = CutOff(*ends(pause_s, beyond_K), within_s[1])
+        faulty = self.faulty(pause_s)[number].at(self.hardest[number])
+        cut = CutOff(*stages.ends_C, within_s[1])
         return bool(faulty.beyond_K(faulty.moments(), within_s[0], cut).max() <= 0.0)
 
-    numbers, within = range(len(singles)), (PRACTICAL_S, PRACTICAL_S)
-
-    def found(pause_s: float, needed: Sequence[Span] | None = None) -> list[_InPlays] | None:
+    def in_plays(self, pause_s: float, needed: Sequence[Span] | None = None) -> list[_InPlays] | None:
         """Demands of each drive; None as soon as one needs something quicker than in `needed`."""
-        at_C, faulty, demands = ends(pause_s, beyond_K), after(pause_s), {}
+        ends_C, faulty, demands = self.stages(pause_s).ends_C, self.faulty(pause_s), {}
+        numbers = range(len(self.faults))
         for number in sorted(numbers, key=lambda number: not (needed and any(needed[number]))):  # may not suffice first
-            one = demands[number] = _in_plays(faulty[number], hardest[number], at_C)
-            if needed and np.less(one.within_s, needed[number]).any():
+            demands[number] = _in_plays(faulty[number], self.hardest[number], ends_C)
+            if needed and np.less(demands[number].within_s, needed[number]).any():
                 return None
         return [demands[number] for number in numbers]
 
-    def completed(in_plays: Sequence[_InPlays], pause_s: float) -> list[Found]:
-        starts = starts_of(pause_s)
-        rest_s = None if shortest_s is None else beginning.kept_s(starts, pause_s)
-        failed = () if shortest_s is None else stays(reach_of(pause_s), held)
-        said_s = None if shortest_s is None else pause_s
-        resting = _resting(after(pause_s)[0], ends(pause_s, beyond_K))
-        rows = zip(faults, singles, in_plays, numbers, strict=True)
-        return [
-            (_demands(faulty, single, one, resting, (rest_s, beginning.unpowered(k, 0.0)), said_s), failed)
-            for faulty, single, one, k in rows
-        ]
+    def shortest(self, shortest_s: float) -> tuple[float, list[_InPlays]]:
+        """The shortest pause from one on with practical demands, and these."""
+        numbers, within = range(len(self.faults)), (PRACTICAL_S, PRACTICAL_S)
+        longest_s = self.longest_s
+        needed = [(0.0, 0.0) if self.suffices(k, shortest_s, within) else within for k in numbers]
+        if not all(self.suffices(k, longest_s, needed[k]) for k in numbers) and not self.stages(longest_s).failed:
+            at_best = self.in_plays(longest_s) or []
+            needed = [
+                (min(most[0], one.within_s[0]), min(most[1], one.within_s[1]))
+                for most, one in zip(needed, at_best, strict=True)
+            ]
+        pause_s = lengthened_s(
+            shortest_s, longest_s, lambda longer_s: all(map(self.suffices, numbers, repeat(longer_s), needed))
+        )
+        added_s = max(PAUSE_STEP_S, 0.02 * pause_s)
+        while (in_plays := self.in_plays(pause_s, needed if pause_s < longest_s else None)) is None:
+            longer_s = math.ceil((pause_s + added_s) / PAUSE_STEP_S) * PAUSE_STEP_S
+            pause_s, added_s = min(longest_s, longer_s), 2.0 * added_s
+        return pause_s, in_plays
 
-    if shortest_s is None:
-        return None, completed(found(begin_s) or [], begin_s)
-    needed = [(0.0, 0.0) if holds(k, shortest_s, within) else within for k in numbers]
-    if not all(holds(k, longest_s, needed[k]) for k in numbers) and not stays(reach_of(longest_s), held):
-        at_best = found(longest_s) or []
-        needed = [
-            (min(most[0], one.within_s[0]), min(most[1], one.within_s[1]))
-            for most, one in zip(needed, at_best, strict=True)
-        ]
-    pause_s = lengthened_s(shortest_s, longest_s, lambda longer_s: all(map(holds, numbers, repeat(longer_s), needed)))
-    added_s = max(PAUSE_STEP_S, 0.02 * pause_s)
-    while (in_plays := found(pause_s, needed if pause_s < longest_s else None)) is None:
-        pause_s, added_s = min(longest_s, math.ceil((pause_s + added_s) / PAUSE_STEP_S) * PAUSE_STEP_S), 2.0 * added_s
-    return pause_s, completed(in_plays, pause_s)
+    def completed(self, in_plays: Sequence[_InPlays], pause_s: float, said_s: float | None) -> list[Found]:
+        """The whole demands on each drive, and what fails; `said_s` is the pause where one is safe."""
+        stages = self.stages(pause_s)
+        rest_s = None if said_s is None else self.beginning.kept_s(self.starts(pause_s), pause_s)
+        resting = _resting(self.faulty(pause_s)[0], stages.ends_C)
+        found = []
+        for number, one in enumerate(in_plays):
+            demands = replace(self._demands(number, one, resting, stages, rest_s), pause_at_least_s=said_s)
+            found.append((demands, () if said_s is None else stages.failed))
+        return found
+
+    def _demands(
+        self,
+        number: int,
+        in_plays: _InPlays,
+        resting: tuple[CutOff, SingleFault],
+        stages: Stages,
+        rest_s: float | None,
+    ) -> Demands:
+        """Demands of a drive on the hardware, with the rest before a first play."""
+        single, faulty = self.singles[number], self.faults[number]
+        cut_off, stuck = min((in_plays.cut_off, in_plays.stuck), resting, key=lambda each: each[0].react_within_s)
+        polarity, swapped = polarity_check(faulty, self.fall_K)
+        findings = self.beginning.unpowered(number, 0.0)
+        first = {"finding": next(iter(findings), None), "rest_s": rest_s}
+        begins = SingleFault("unpowered", colour_of(findings), first)
+        faults = [in_plays.hangs, begins, swapped]
+        if stages.held is not None:
+            faults.append(inside_fault(stages.held, cut_off))
+        slow = self.slow
+        if slow.limit_A is not None:
+            told = {"rate": slow.rate_K_per_s, "kept": slow.kept, "limit_A": slow.limit_A}
+            faults.append(SingleFault("stuck fast", "red", told))
+        dose_min = float(single.tallies[0].summed(DOSE).max()) + self.skin.worst_dose_min(stages)
+        return Demands(
+            watchdog_s=in_plays.watchdog_s,
+            cut_off_display_C=cut_off,
+            polarity_check=polarity,
+            rest_before_first_play_s=rest_s,
+            pause_at_least_s=None,
+            zero_current_at_most_s=zero_current_s(faulty.ensemble, self.limits, single.end, dose_min),
+            faults=(*faults, stuck),
+            held_cut_off_display_C=stages.held,
+            current_limit_A=slow.limit_A,
+        )
+
+
+def shown_between(faulty: Faulty, span_C: Span, pause_s: float) -> Shown:
+    """What the display reaches in plays that begin between bounds, and how long it stays beyond `span_C`."""
+    ensemble, low_C, high_C, longest_s = faulty.ensemble, math.inf, -math.inf, 0.0
+    rows_s = np.append(PAUSE_ROWS_S[pause_s - 1e-6 > PAUSE_ROWS_S], pause_s)
+    for begun in faulty.bounds:
+        stay = Stay(span_C)
+        for (times_s, values), state in ensemble.play(faulty.drive, begun):
+            display = values[DISPLAY]
+            low_C, high_C = min(low_C, float(np.nanmin(display))), max(high_C, float(np.nanmax(display)))
+            stay.add(times_s, display)
+            after = state
+        pause = ensemble.watch(faulty.rest_A, after, rows_s, ensemble.lanes, ("display_C",))[0]
+        stay.add(float(faulty.drive.time_s[-1]) + rows_s, pause)
+        longest_s = max(longest_s, stay.beyond_s)
+    return Shown(low_C, high_C, longest_s)
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,59 +314,19 @@ def _resting(faulty: Faulty, ends_C: Span) -> tuple[CutOff, SingleFault]:
     return faulty.cut_off(ends_C, faulty.resting(unpowered), shares=STUCK_SHARES)
 
 
-def _demands(
-    faulty: Faulty,
-    single: Single[CurrentPlay, State],
-    found: _InPlays,
-    resting: tuple[CutOff, SingleFault],
-    first: tuple[float | None, Sequence[Check]],
-    pause_s: float | None,
-) -> Demands:
-    """Demands of a drive on the hardware; `first`: the rest before a first play, and its effect."""
-    ensemble, limits = faulty.ensemble, faulty.limits
-    cut_off, stuck = min((found.cut_off, found.stuck), resting, key=lambda each: each[0].react_within_s)
-    polarity, swapped = polarity_check(faulty)
-    rest_s, findings = first
-    begins = SingleFault("unpowered", colour_of(findings), {"finding": next(iter(findings), None), "rest_s": rest_s})
-    zero = None
-    if ensemble.ideal:
-        dose = single.tallies[0].summed("thermal dose")
-        zero = dose_time_s(ensemble, limits, single.end, dose, limits.session_s)
-        zero = None if zero >= limits.session_s else float(math.floor(zero))
-    faults = found.hangs, begins, swapped, stuck
-    return Demands(found.watchdog_s, cut_off, polarity, rest_s, pause_s, zero, faults)
+def inside_fault(held: HeldCutOff, cut_off: CutOff) -> SingleFault:
+    """A driver that is stuck where the first cut-off does not act."""
+    return SingleFault("stuck inside", "red", {"held": held, "cut_off": cut_off})
 
 
-def polarity_check(faulty: Faulty) -> tuple[PolarityCheck, SingleFault]:
-    """The effect of swapped poles, and the wiring check that detects them."""
-    swapped = Drive(faulty.drive.time_s, -faulty.drive.current_A, faulty.drive.held)
-    tally = Tally(faulty.limits, faulty.ensemble.corners, Scenario(way="poles swapped"))
-    low, high = np.inf, -np.inf
-    for (rows, values), _ in faulty.ensemble.play(swapped, faulty.ensemble.at_rest(0.0)):
-        tally.add(rows, values)
-        skin = np.nan_to_num(values[WATCHED.index("skin_C")], nan=999.0)
-        low, high = min(low, float(skin.min())), max(high, float(skin.max()))
-    test_A = testing_A(faulty.ensemble)
-    values, _ = faulty.ensemble.hold(test_A, faulty.ensemble.at_rest(0.0), np.array([0.0, TEST_S]))
-    display = values[WATCHED.index("display_C")]
-    fall = float((display[:, 0] - display[:, -1]).min())
-    needed = not tally.passes()
-    least_K = math.floor(50.0 * fall) / 100.0
-    check = PolarityCheck(needed, OFF_S, test_A, TEST_S, least_K, (round(low, 1), round(high, 1)))
-    return check, SingleFault("swapped", colour_of(findings_of(tally.checks())), {"check": check})
-
-
-def testing_A(ensemble: Ensemble) -> float:
-    """The current in A by which the polarity is checked: in whole milliamperes, within the driver's."""
-    return math.floor(1e3 * min(TEST_A, ensemble.rig.driver.current_max_A) + 1e-9) / 1e3
-
-
-def dose_time_s(ensemble: Ensemble, limits: Limits, state: State, dose_before: Array, session_s: float) -> float:
-    """How long in s zero current may last until the dose, `dose_before` (corners,) with it, reaches its limit."""
-    most = next(rule.limit for rule in limits.rules if rule.quantity == "thermal dose")
-    times = np.concatenate([[0.0], np.geomspace(1.0, session_s, 120)])
+def zero_current_s(ensemble: Ensemble, limits: Limits, state: State, dose_before_min: float) -> float | None:
+    """After how long in s contact must end at zero current, since the dose before adds up; None: a session is safe."""
+    if not ensemble.ideal:
+        return None
+    most = next(rule.limit for rule in limits.rules if rule.quantity == DOSE)
+    times = np.concatenate([[0.0], np.geomspace(1.0, limits.session_s, 120)])
     values, _ = ensemble.hold(0.0, state, times)
     skin = np.clip(np.nan_to_num(values[WATCHED.index("skin_C")], nan=HOTTEST_C), None, HOTTEST_C)
-    dose = cem43_min(times, skin).max(axis=0) + float(dose_before.max())
+    dose = cem43_min(times, skin).max(axis=0) + dose_before_min
     over = np.flatnonzero(dose > most)
-    return session_s if not len(over) else float(times[max(0, over[0] - 1)])
+    return float(math.floor(times[max(0, over[0] - 1)])) if len(over) else None

@@ -94,10 +94,11 @@ class Loop:
 
 @dataclass(frozen=True, slots=True)
 class Harm:
-    """The temperature in °C that passes a hard limit the farthest."""
+    """What passes a limit the farthest: a temperature, or the dose that a fault adds."""
 
     quantity: str
-    value_C: float
+    value: float
+    unit: str
 
 
 @dataclass(frozen=True, slots=True)

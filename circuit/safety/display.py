@@ -22,7 +22,8 @@ from ..solver.modes import FELT, SkinModes, modes_of
 from .checks import Check, colour_of, worst_of
 from .corners import contact_corners
 from .demands import CutOff, Demands, SingleFault
-from .held import Span, around_C, held_C, stays
+from .fault_limits import COLUMN_OF, FELT_COLUMNS
+from .held import INSIDE_K, Span, around_C, stays
 from .plant import ENDING_ROWS_S, ENDING_S, LATE_S, OFF_ROWS_S, Future, Plant, Single, Stretch, left_s
 from .playmap import PlayMap, least_bound
 from .repeated import LONGEST_PAUSE_S, PRACTICAL_S, Repeating, lengthened_s
@@ -34,6 +35,12 @@ DISPLAY_ENDINGS = ("last set-point held", "control lost")
 
 INSTANTS = 24
 """Instants of a play, besides the last of its extreme, at which states are compared."""
+
+FOR_GOOD = (
+    "beyond it the skin under a display that stays there passes its own limit, so that no cut-off both lets this play "
+    "pass and stops a display that gets stuck: use a smaller or shorter change"
+)
+"""Why a thermode is refused that goes where it may not stay: its own cut-off knows no time."""
 
 _PLACE = {name: FELT.index(name) for name in WATCHED if name in FELT}
 
@@ -220,8 +227,9 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         shown = [check.value for checks in groups for check in checks if check.quantity == "display"]
         around, held = (min(shown), max(shown)), (-np.inf, np.inf)
         if self.rates:  # a controller around the module is judged for itself
-            held = held_C(self.rig, repeating.limits)
-        cut, failed = around_C(repeating.limits, around, held), () if shortest_s is None else stays(around, held)
+            held = for_good_C(self.modes, repeating.limits)
+        cut = around_C(repeating.limits, around, held)
+        failed = () if shortest_s is None else stays(around, held, FOR_GOOD)
         demanded_s, first = None if shortest_s is None else pause_s, starts(pause_s)
         rest_s = None if shortest_s is None else beginning.kept_s(first, pause_s)
         return demanded_s, [
@@ -281,6 +289,21 @@ class _Faults:
             SingleFault("loop stuck", "red" if react < ENDING_S else "green", stuck),
         )
         return Demands(watchdog, cut, None, rest_s, pause_s, None, faults)
+
+
+def for_good_C(corners: Sequence[SkinModes], limits: Limits) -> Span:
+    """Between which temperatures in °C a thermode may stay without limit of time, in all corners."""
+    low, high = -math.inf, math.inf
+    for modes in corners:
+        at_0, at_1 = (modes.relax(np.zeros(1), level, modes.steady(level))[:, 0] for level in (0.0, 1.0))
+        for rule in limits.rules:
+            column = COLUMN_OF.get(rule.quantity, "")
+            if rule.severity == "hard" and not rule.relative and rule.above_C is None and column in FELT_COLUMNS:
+                row = FELT.index(column)
+                side = -INSIDE_K if rule.upper else INSIDE_K
+                level = float((rule.limit + side - at_0[row]) / (at_1[row] - at_0[row]))
+                low, high = (low, min(high, level)) if rule.upper else (max(low, level), high)
+    return low, high
 
 
 def watched(felt: Sequence[Array]) -> Array:

@@ -45,6 +45,17 @@ def cem43_min(time_s: npt.ArrayLike, temperature_C: npt.ArrayLike) -> Array:
     return _integral(fill_dose, time_s, temperature_C)
 
 
+def cem43_per_min(temperature_C: Array) -> Array:
+    """Thermal dose in equivalent minutes at 43 °C that a minute at temperatures in °C adds.
+
+    >>> cem43_per_min(np.array([36.0, 42.0, 43.0, 44.0])).tolist()
+    [0.0, 0.25, 1.0, 2.0]
+    """
+    start_C, reference_C, base_above, base_below = constants()[: len(_KEPT)]
+    base = np.where(temperature_C < reference_C, base_below, base_above)
+    return np.where(temperature_C < start_C, 0.0, base ** (reference_C - temperature_C))
+
+
 def henriques(time_s: npt.ArrayLike, temperature_C: npt.ArrayLike) -> Array:
     """Cumulative burn integral Ω (…, rows) of temperatures (…, rows) in °C; a first-degree burn begins at 0.53.
 

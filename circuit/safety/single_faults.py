@@ -3,7 +3,8 @@
 They do not make a drive unsafe by themselves, since hardware prevents them. Simulating them in the worst corners gives
 what the hardware must do. With a given current a play that begins warmer stays warmer at every node, so a hang in any
 play lies between hangs from the warm and from the cold bound of all plays. A driver may be stuck at any current up to
-its limits; where the display then stays inside the cut-off is in `held.py`.
+its limits; where the display then stays inside the cut-off is in `held.py`. Rates depend on differences between nodes,
+for which bounds mean nothing: they are those of a driver that gets stuck in a play from rest.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 from .demands import CutOff, Harm, SingleFault
 from .ensemble import Ensemble, between
-from .held import COLUMN_OF
+from .fault_limits import FaultLimits
 from .tally import WATCHED
 
 HANG_S, INSTANTS = 60.0, 8
@@ -41,6 +42,8 @@ LIMITS_TRIED = 6
 """Current limits between the driver's own and the peak of the drive."""
 STUCK_SHARES = (1.0, 0.5, 0.25)
 """Shares of the driver's limits at which it may be stuck: beyond what holds the display at the cut-off."""
+RATE_ROWS_S = np.arange(151) * 0.01
+"""Rows in which the rate of skin is highest after a driver got stuck."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,15 +63,20 @@ class Moments:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Faulty:
-    """A drive in its worst corners with its rest in `start`; begun between `bounds` if any, at `instants` or all."""
+    """A drive in its worst corners with its rest in `start`; begun between `bounds` if any, at `instants` or all.
+
+    `may` is what a single fault may lead to; `limit_A`: between which currents a driver stays, None: its own.
+    """
 
     ensemble: Ensemble
     drive: Drive
     rest_A: float
     start: State
     limits: Limits
+    may: FaultLimits
     bounds: tuple[State, ...] = ()
     instants: tuple[int, ...] | None = None
+    limit_A: tuple[float, float] | None = None
 
     def at(self, corners: list[int]) -> Faulty:
         """The same in some of the corners."""
@@ -76,16 +84,6 @@ class Faulty:
         start, *bounds = (state.take(which) for state in (self.start, *self.bounds))
         few = self.ensemble if len(corners) == len(self.ensemble.corners) else self.ensemble.only(corners)
         return replace(self, ensemble=few, start=start, bounds=tuple(bounds))
-
-    @property
-    def shown_C(self) -> tuple[float, float]:
-        """Between which temperatures in °C the display is in plays that begin between bounds."""
-        shown = [
-            values[WATCHED.index("display_C")]
-            for begun in self.bounds
-            for (_, values), _ in self.ensemble.play(self.drive, begun)
-        ]
-        return float(min(np.nanmin(one) for one in shown)), float(max(np.nanmax(one) for one in shown))
 
     def moments(self) -> Moments:
         """When the current may get stuck: at instants of a play and after it."""
@@ -128,20 +126,25 @@ class Faulty:
         """The worst of currents that hang until a watchdog cuts them, and how far each lane passes a limit."""
         return self._cut_K(moments, np.full(len(moments.rigs), min(HANG_S, watchdog_s / MARGIN)))
 
-    def _cut_K(self, moments: Moments, cut_s: Array) -> tuple[Harm | None, Array]:
-        """The worst while currents are stuck until `cut_s` (lanes,) and for 30 s after; lanes with 0 do not count."""
+    def _cut_K(self, moments: Moments, cut_s: Array, late_s: float = 0.0) -> tuple[Harm | None, Array]:
+        """The worst while currents are stuck until `cut_s` (lanes,) and for 30 s after; lanes with 0 do not count.
+
+        A cut-off was `late_s` late: for so long the skin counts as being as warm as it gets.
+        """
         which = np.flatnonzero(cut_s)
         rigs, state, cut_s = moments.rigs[which], moments.state.take(which), cut_s[which]
         if moments.stuck_A is not None and self.ensemble.ideal:  # the driver's limit leads one way until it is cut
             nodes = self.ensemble.modes(moments.stuck_A).after(rigs, state.nodes_C, cut_s)
-            values = self.ensemble.watch(0.0, State(nodes, state.sink), AFTER_ROWS_S, rigs)
+            rows_s, values = AFTER_ROWS_S, self.ensemble.watch(0.0, State(nodes, state.sink), AFTER_ROWS_S, rigs)
         else:
-            times = np.unique(np.concatenate([HANG_ROWS_S[cut_s.max() > HANG_ROWS_S], cut_s]))
-            on = times[:-1, np.newaxis] < cut_s - 1e-9
-            until, then = self.ensemble.step(on * moments.command_A[which], state, times, rigs)
-            values = np.concatenate([until, self.ensemble.watch(0.0, then, AFTER_ROWS_S, rigs)], axis=2)
+            rows_s = np.unique(np.concatenate([HANG_ROWS_S[cut_s.max() > HANG_ROWS_S], cut_s]))
+            on = rows_s[:-1, np.newaxis] < cut_s - 1e-9
+            until, then = self.ensemble.step(on * moments.command_A[which], state, rows_s, rigs)
+            after = self.ensemble.watch(0.0, then, AFTER_ROWS_S, rigs)
+            rows_s, values = np.append(rows_s, rows_s[-1] + AFTER_ROWS_S), np.concatenate([until, after], axis=2)
+            late_s = 0.0
         far_K = np.full(len(moments.rigs), -np.inf)
-        harm, far_K[which] = _passed(self.limits, values)
+        harm, far_K[which] = self.may.passed(values, rows_s, late_s)
         return harm, far_K
 
     def beyond_K(self, moments: Moments, watchdog_s: float, cut: CutOff) -> Array:
@@ -154,7 +157,8 @@ class Faulty:
         """How far lanes pass a limit if a cut-off acts in time on a driver that is stuck at a current."""
         stuck = moments.stuck_at(full_A)
         display = self.ensemble.watch(full_A, moments.state, STUCK_ROWS_S, moments.rigs, ("display_C",))[0]
-        return self._cut_K(stuck, _late_s(display, cut.low, cut.high, cut.react_within_s))[1]
+        late_s = cut.react_within_s / MARGIN
+        return self._cut_K(stuck, _cut_s(display, cut.low, cut.high, late_s), late_s)[1]
 
     def cut_off(
         self,
@@ -171,7 +175,7 @@ class Faulty:
             stuck = moments.stuck_at(current_A)
             values = self.ensemble.watch(current_A, moments.state, STUCK_ROWS_S, moments.rigs)
             slowest = min(slowest, self._reaction_s(stuck, values, low, high))
-            harm, _ = _passed(self.limits, values)
+            harm, _ = self.may.passed(values, STUCK_ROWS_S, 0.0)
             if harm is not None and current_A in self.ends_A:
                 harms.append((harm, current_A))
         if hangs:
@@ -180,7 +184,7 @@ class Faulty:
             slowest = min(slowest, self._reaction_s(moments, values, low, high))
         driver, cut = self.ensemble.rig.driver, CutOff(low, high, slowest)
         most_A = max(driver.current_max_A, -driver.current_min_A)
-        limit_A = self._limit_A(moments, low, high, most_A) if slowest == 0.0 else None
+        limit_A = self._slower_A(moments, low, high, most_A) if slowest == 0.0 else None
         told = {"harms": tuple(harms), "cut_off": cut, "most_A": most_A, "limit_A": limit_A}
         return cut, SingleFault("stuck", "red" if harms else "green", told)
 
@@ -188,9 +192,15 @@ class Faulty:
     def ends_A(self) -> tuple[float, float]:
         """The least and the greatest current in A of the driver, or of the bridge."""
         driver, bridge_A = self.ensemble.rig.driver, self.ensemble.bridge_A
-        return (driver.current_min_A, driver.current_max_A) if bridge_A is None else (-bridge_A, bridge_A)
+        ends = (driver.current_min_A, driver.current_max_A) if bridge_A is None else (-bridge_A, bridge_A)
+        return ends if self.limit_A is None else self.limit_A
 
-    def _limit_A(self, moments: Moments, low: float, high: float, full: float) -> float | None:
+    def rate_K_per_s(self, moments: Moments, current_A: float) -> float:
+        """How fast the skin moves at most where a driver gets stuck at a current."""
+        skin = self.ensemble.watch(current_A, moments.state, RATE_ROWS_S, moments.rigs, ("skin_C",))[0]
+        return float(np.abs(np.diff(skin, axis=1)).max()) / float(RATE_ROWS_S[1])
+
+    def _slower_A(self, moments: Moments, low: float, high: float, full: float) -> float | None:
         """A current limit that prevents harm where no cut-off is quick enough, and still plays the drive."""
         driver, cut = self.ensemble.rig.driver, CutOff(low, high, REACTIONS_S[0])
         shares = driver.current_min_A / full, driver.current_max_A / full
@@ -205,8 +215,12 @@ class Faulty:
     def _reaction_s(self, moments: Moments, values: Array, low: float, high: float) -> float:
         """The longest reaction time of a cut-off that is safe for currents that would give `values`; 0 for none."""
         display = values[WATCHED.index("display_C")]
-        late_s = [_late_s(display, low, high, time_s) for time_s in REACTIONS_S]
-        safe = bisect_left(late_s, 1, key=lambda cut_s: int(self._cut_K(moments, cut_s)[1].max() > 0.0))
+
+        def harms(reaction_s: float) -> bool:
+            late_s = reaction_s / MARGIN
+            return bool(self._cut_K(moments, _cut_s(display, low, high, late_s), late_s)[1].max() > 0.0)
+
+        safe = bisect_left(REACTIONS_S, 1, key=lambda reaction_s: int(harms(reaction_s)))
         return (0.0, *REACTIONS_S)[safe]
 
 
@@ -241,25 +255,8 @@ def side_by_side(states: Sequence[State]) -> State:
     return State(*(np.concatenate([getattr(one, part) for one in states]) for part in ("nodes_C", "sink")))
 
 
-def _late_s(display: Array, low: float, high: float, reaction_s: float) -> Array:
-    """When a cut-off at two temperatures of the display (lanes, STUCK_ROWS_S) has acted in each lane."""
+def _cut_s(display: Array, low: float, high: float, late_s: float) -> Array:
+    """When a cut-off at two temperatures of the display (lanes, STUCK_ROWS_S) has acted in each lane, so late in s."""
     out = ~((display > low) & (display < high))
-    first = out.argmax(axis=1)
-    late_s = np.where(out.any(axis=1), STUCK_ROWS_S[first], HANG_S) + reaction_s / MARGIN
-    return np.minimum(HANG_S, late_s)
-
-
-def _passed(limits: Limits, values: Array) -> tuple[Harm | None, Array]:
-    """The limit that is passed the farthest, and by how much in each lane in K; negative inside."""
-    farthest, harm = np.full(values.shape[1], -np.inf), None
-    columns = {**COLUMN_OF, "display": "display_C", "hot plate": "hot_plate_C"}
-    for rule in limits.rules:
-        if rule.severity != "hard" or rule.relative or rule.quantity not in columns or rule.above_C is not None:
-            continue
-        column = np.nan_to_num(values[WATCHED.index(columns[rule.quantity])], nan=999.0)
-        over = (column - rule.limit if rule.upper else rule.limit - column).max(axis=1)
-        if over.max() > max(float(farthest.max()), 0.0):
-            reached = float(column.max() if rule.upper else column.min())
-            harm = Harm(rule.quantity, reached)
-        farthest = np.maximum(farthest, over)
-    return harm, farthest
+    crossed_s = np.where(out.any(axis=1), STUCK_ROWS_S[out.argmax(axis=1)], HANG_S)
+    return np.minimum(HANG_S, crossed_s + late_s)

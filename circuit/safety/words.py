@@ -134,6 +134,8 @@ def _prevented(fault: SingleFault) -> tuple[dict[str, Any], str, str]:
     harms = [f"{_harm(harm)} at {signed(amperes, '.3g')} A" for harm, amperes in told.get("harms", ())]
     told["harms"] = " and ".join(harms) or NO_LIMIT
     told["levels"] = " or ".join(f"{signed(level, '.1f')} °C" for level in told.get("levels_C", ()))
+    if fault.kind == "stuck fast":
+        told["limits"] = " … ".join(signed(end_A, "g") for end_A in told["limit_A"])
     if (cut := told.get("cut_off")) is not None:
         told |= {"react_s": cut.react_within_s, "ends": f"{cut.low:g} and {cut.high:g} °C"}
     if (check := told.get("check")) is not None:
@@ -146,4 +148,4 @@ def _prevented(fault: SingleFault) -> tuple[dict[str, Any], str, str]:
 
 
 def _harm(harm: Harm) -> str:
-    return f"{harm.quantity} reaches {signed(harm.value_C, '.1f')} °C"
+    return f"{harm.quantity} reaches {signed(harm.value, '.1f')} {harm.unit}"

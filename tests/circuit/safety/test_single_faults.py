@@ -11,7 +11,8 @@ from tests.circuit.delivery.replay import Held, Player, exposure
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Drive, Limits, Rig, gate
 from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
-from thermicon.circuit.safety.demanded import TEST_A, TEST_S, dose_time_s, polarity_check
+from thermicon.circuit.safety.demanded import zero_current_s
+from thermicon.circuit.safety.polarity import TEST_A, TEST_S, least_fall_K, polarity_check, test_starts
 from thermicon.circuit.safety.demands import CutOff, SingleFault
 from thermicon.circuit.safety.display import DisplayPlant
 from thermicon.circuit.safety.ensemble import Ensemble, between
