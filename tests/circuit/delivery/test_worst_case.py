@@ -24,11 +24,12 @@ from thermicon.circuit.delivery.worstcase import ways_of, worst_cases
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.checks import worst_of
 from thermicon.circuit.safety.corners import corners_of
-from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay, checks_of_lanes
+from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay, single_of_lanes
 from thermicon.circuit.safety.display import DisplayPlant
 from thermicon.circuit.safety.ensemble import Ensemble, LaneDrives
 from thermicon.circuit.safety.gate import Gate, gate_set
 from thermicon.circuit.safety.plant import Single
+from thermicon.circuit.safety.tally import worst_of_lanes
 from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.circuit.safety.words import more_and_cure
 from thermicon.icons import load_library
@@ -65,7 +66,7 @@ class TestWorstCase:
         time_s = np.arange(41) * 0.1
         amps = [0.08 + 0.3 * (k + 1) * np.sin(np.pi * time_s / 4.0) for k in range(3)]
         lanes = LaneDrives(time_s, np.array(amps))
-        together = checks_of_lanes(Ensemble.on(RIG, tuple(corners), None), lanes, RIG.limits)
+        together = worst_of_lanes(single_of_lanes(Ensemble.on(RIG, tuple(corners), None), lanes, RIG.limits).tallies)
         plants = (CurrentPlant.of(Ensemble.on(RIG, (corner,), None)) for corner in corners)
         plays = (CurrentPlay(Drive(time_s, own, held=True), float(own[0])) for own in amps)
         each = [Single.of(plant, play, RIG.limits).checks for plant, play in zip(plants, plays, strict=True)]
