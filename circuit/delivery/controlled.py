@@ -27,7 +27,7 @@ from ..safety.fault_limits import DOSE, FaultLimits
 from ..safety.gate import Gate, gate_shown
 from ..safety.held import SENSOR_K, HeldSkin, Span, Stages, around_C, one_stage, two_stages
 from ..safety.plant import recovery_s
-from ..safety.polarity import least_fall_K, polarity_check, test_starts
+from ..safety.polarity import least_fall_K, polarity_check, where_tests_begin
 from ..safety.shown import Stay
 from ..safety.tally import worst_of_lanes
 from ..solver.batch_inputs import Bank, run_regulate
@@ -163,7 +163,7 @@ def _wiring(
     """The test of the polarity from any start, and what a loop does that has lost its sensor or its polarity."""
     every = Ensemble.of(rig)
     faulty = [module.faulty(play, every) for play in plays]
-    starts = test_starts(every, [one.start for one in faulty], [one.moments() for one in faulty])
+    starts = where_tests_begin(every, [one.start for one in faulty], [one.moments() for one in faulty])
     nominal = module.faulty(plays[0], every.only([0]))
     polarity, _ = polarity_check(nominal, least_fall_K(every, starts))
     _, stuck = nominal.cut_off((cut.low, cut.high))

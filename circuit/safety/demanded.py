@@ -26,7 +26,7 @@ from .exposure import cem43_min
 from .fault_limits import DOSE, FaultLimits
 from .held import BEYONDS_K, SENSOR_K, HeldSkin, Stages, one_stage, two_stages
 from .plant import Single
-from .polarity import TEST_S, least_fall_K, polarity_check, test_starts, testing_A
+from .polarity import TEST_S, least_fall_K, polarity_check, testing_A, where_tests_begin
 from .repeated import LONGEST_PAUSE_S, PAUSE_STEP_S, PRACTICAL_S, Repeating, lengthened_s
 from .shown import PAUSE_ROWS_S, Shown, Span, Stay
 from .single_faults import STUCK_SHARES, Faulty
@@ -62,14 +62,18 @@ def demanded(
     slow = limited(faults, once)
     begin_s = LONGEST_PAUSE_S if shortest_s is None else shortest_s
     skin = HeldSkin.of(plant.rig, may)
+    lasting = skin.lasting_C()
+    beginning = Beginning.of(repeating, begin_s, max(recovered_s))
+    first_s = longest_rest_s(faults, beginning.left, healthy_C(lasting))
     search = Search(
         singles,
         [replace(one, limit_A=slow.limit_A) for one in faults],
-        Beginning.of(repeating, begin_s, max(recovered_s)),
+        replace(beginning, least_s=float(math.ceil(first_s)) if math.isfinite(first_s) else 0.0),
         skin,
-        skin.lasting_C(),
+        lasting,
+        first_s,
         slow,
-        least_fall_K(plant.ensemble, test_starts(plant.ensemble, [single.start for single in singles], once)),
+        least_fall_K(plant.ensemble, where_tests_begin(plant.ensemble, [single.start for single in singles], once)),
         max(begin_s, *recovered_s),
     ).chosen(begin_s)
     if shortest_s is None:
@@ -82,9 +86,9 @@ def demanded(
 class Search:
     """A search for demands on drives of a set, between pauses in s of which the longest lets all recover.
 
-    `lasting` is where the display may stay, `slow` the current limit of the driver, `fall_K` how far the display falls
-    in a test of the polarity. Cut-offs are `beyond_K` beyond what the display reaches, and `hardest` are the corners of
-    each drive in which watchdog and cut-off are tried.
+    `lasting` is where the display may stay, beyond which a first rest leaves it for `first_s`; `slow` is the current
+    limit of the driver, `fall_K` how far the display falls in a test of the polarity. Cut-offs are `beyond_K` beyond
+    what the display reaches, and `hardest` are the corners of each drive in which watchdog and cut-off are tried.
     """
 
     singles: Singles
@@ -92,6 +96,7 @@ class Search:
     beginning: Beginning[CurrentPlay, State]
     skin: HeldSkin
     lasting: Span
+    first_s: float
     slow: Limited
     fall_K: float
     longest_s: float
@@ -120,25 +125,10 @@ class Search:
         """What the display reaches without a fault, and for how long in s it is beyond where it may stay."""
         if pause_s not in self._shown:
             singles = [check.value for one in self.singles for check in one.checks if check.quantity == "display"]
-            once = Shown(min(singles), max(singles), self._rest_s())
-            later = (shown_between(one, self._healthy_C(), pause_s) for one in self.faulty(pause_s))
+            once = Shown(min(singles), max(singles), self.first_s)
+            later = (shown_between(one, healthy_C(self.lasting), pause_s) for one in self.faulty(pause_s))
             self._shown[pause_s] = Shown.of([once, *later])
         return self._shown[pause_s]
-
-    def _healthy_C(self) -> Span:
-        """Inside of which a sensor that is wrong does not show the display beyond where it may stay."""
-        return self.lasting[0] + SENSOR_K, self.lasting[1] - SENSOR_K
-
-    def _rest_s(self) -> float:
-        """How long a first rest leaves the display beyond where it may stay, with the test of the polarity before."""
-        ensemble, longest_s = self.faults[0].ensemble, 0.0
-        for rest_A in {one.rest_A for one in self.faults}:
-            for state in self.beginning.left:
-                stay = Stay(self._healthy_C(), since_s=0.0)
-                display = ensemble.watch(rest_A, state, PAUSE_ROWS_S, ensemble.lanes, ("display_C",))[0]
-                stay.add(PAUSE_ROWS_S, display)
-                longest_s = max(longest_s, stay.beyond_s)
-        return longest_s + TEST_S if longest_s else 0.0
 
     def stages(self, pause_s: float, beyond_K: float | None = None) -> Stages:
         """The cut-offs around plays with a pause between them: one where the longest pause makes that suffice."""
@@ -249,20 +239,42 @@ class Search:
         )
 
 
+def healthy_C(lasting: Span) -> Span:
+    """Inside of which a sensor that is wrong does not show a display beyond where it may stay."""
+    return lasting[0] + SENSOR_K, lasting[1] - SENSOR_K
+
+
+def longest_rest_s(drives: Sequence[Faulty], left: tuple[State, State], span_C: Span) -> float:
+    """For how long in s a rest, after a test of the polarity, leaves a display beyond temperatures while current flows.
+
+    `left` is what it may begin from; infinite where the rest itself is beyond them.
+    """
+    ensemble, longest_s = drives[0].ensemble, 0.0
+    for rest_A in {one.rest_A for one in drives if one.rest_A != 0.0}:
+        for state in left:
+            stay = Stay(span_C, since_s=0.0)
+            stay.add(PAUSE_ROWS_S, ensemble.watch(rest_A, state, PAUSE_ROWS_S, ensemble.lanes, ("display_C",))[0])
+            longest_s = max(longest_s, stay.beyond_s)
+    return longest_s + TEST_S if longest_s else 0.0
+
+
 def shown_between(faulty: Faulty, span_C: Span, pause_s: float) -> Shown:
-    """What the display reaches in plays that begin between bounds, and how long it stays beyond `span_C`."""
+    """What the display reaches in plays that begin between bounds, and how long it is beyond `span_C` with current."""
     ensemble, low_C, high_C, longest_s = faulty.ensemble, math.inf, -math.inf, 0.0
     rows_s = np.append(PAUSE_ROWS_S[pause_s - 1e-6 > PAUSE_ROWS_S], pause_s)
     for begun in faulty.bounds:
-        stay = Stay(span_C)
+        stay = Stay(span_C) if faulty.rest_A else Stay(span_C, since_s=0.0)
         for (times_s, values), state in ensemble.play(faulty.drive, begun):
             display = values[DISPLAY]
             low_C, high_C = min(low_C, float(np.nanmin(display))), max(high_C, float(np.nanmax(display)))
             stay.add(times_s, display)
             after = state
-        pause = ensemble.watch(faulty.rest_A, after, rows_s, ensemble.lanes, ("display_C",))[0]
-        stay.add(float(faulty.drive.time_s[-1]) + rows_s, pause)
-        longest_s = max(longest_s, stay.beyond_s)
+        if faulty.rest_A:
+            pause = ensemble.watch(faulty.rest_A, after, rows_s, ensemble.lanes, ("display_C",))[0]
+            stay.add(float(faulty.drive.time_s[-1]) + rows_s, pause)
+            longest_s = max(longest_s, stay.beyond_s)
+        else:
+            longest_s = max(longest_s, stay.longest_s)
     return Shown(low_C, high_C, longest_s)
 
 

@@ -50,7 +50,7 @@ class Stay:
 
     span_C: Span
     since_s: float = -math.inf
-    _longest_s: float = 0.0
+    longest_s: float = 0.0
     _inside_s: Array | None = None
     _ended: bool = True
 
@@ -60,10 +60,10 @@ class Stay:
         before_s = np.full(len(display_C), self.since_s) if self._inside_s is None else self._inside_s
         since_s = np.maximum(np.where(inside, time_s, -math.inf), before_s[:, np.newaxis])
         since_s = np.maximum.accumulate(since_s, axis=1)
-        self._longest_s = max(self._longest_s, float((time_s - since_s).max()))
+        self.longest_s = max(self.longest_s, float((time_s - since_s).max()))
         self._inside_s, self._ended = since_s[:, -1], bool(inside[:, -1].all())
 
     @property
     def beyond_s(self) -> float:
         """The longest time in s; infinite where a lane is beyond them in the end."""
-        return self._longest_s if self._ended else math.inf
+        return self.longest_s if self._ended else math.inf
