@@ -21,15 +21,16 @@ from ..safety.checks import Check, Scenario, worst_of
 from ..safety.current import single_of_lanes
 from ..safety.demanded import inside_fault, zero_current_s
 from ..safety.demands import CutOff, Demands, Loop, PolarityCheck, SingleFault
-from ..safety.display import DisplayCourse, DisplayPlant
+from ..safety.display import DisplayCourse, DisplayPlant, for_good_C
 from ..safety.ensemble import Ensemble
 from ..safety.fault_limits import DOSE, FaultLimits
 from ..safety.gate import Gate, gate_shown
-from ..safety.held import SENSOR_K, HeldSkin, Span, Stages, around_C, one_stage, two_stages
+from ..safety.held import LASTING_S, SENSOR_K, HeldSkin, Span, Stages, around_C, one_stage, two_stages
 from ..safety.plant import recovery_s
 from ..safety.polarity import least_fall_K, polarity_check, where_tests_begin
 from ..safety.shown import Stay
 from ..safety.tally import worst_of_lanes
+from ..safety.ways_out import with_ways_out
 from ..solver.batch_inputs import Bank, run_regulate
 from ..solver.kernel_regulate import DELAY_S, KD, KI, KP, LAG_S
 from ..solver.network import ALPHA, COLD_J_PER_K, HIGHEST_A, LOWEST_A, RESISTANCE
@@ -78,7 +79,12 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
     every = [_stages(rig.limits, skin, reach_C, lasting, healthy_s, beyond_K) for beyond_K in BEYONDS_K]
     cut, stages, limits_A, stuck = loops.cut_off(every, limits_A, used_A, may)
     loop, swung = _judged_loop(loops, plays, limits_A, cut, (LATE_S,) if rig.controller is None else DELAYS_S)
-    failed = tuple(check for check in (*swings, *stages.failed, *stuck, *swung) if not check.passed)
+    beyond = stages.failed
+    if beyond:
+        shown_C = ends_of_traces(deliveries)
+        contact = HeldSkin(skin.modes[:1], may).brief_C(lasting, stages.brief_s or LASTING_S)
+        beyond = with_ways_out(beyond, shown_C, for_good_C(skin.modes, rig.limits), contact, open_loop=False)
+    failed = tuple(check for check in (*swings, *beyond, *stuck, *swung) if not check.passed)
     polarity, lost = _wiring(module, rig, plays, cut)
     proven = Demands(
         60.0, cut, polarity, None, None, None, (lost,),
@@ -123,6 +129,13 @@ def _dose_min(verdict: Gate) -> float:
 def ends_of(course: DisplayCourse) -> Span:
     """Between which temperatures in °C a display is."""
     return float(course.display_C.min()), float(course.display_C.max())
+
+
+def ends_of_traces(deliveries: Sequence[DeliveredDrive]) -> Span:
+    """Between which temperatures in °C the display of the rig as given is."""
+    lows = [float(one.trace.display_C.min()) for one in deliveries]
+    highs = [float(one.trace.display_C.max()) for one in deliveries]
+    return min(lows), max(highs)
 
 
 def _beyond_s(course: DisplayCourse, inside_C: Span) -> float:

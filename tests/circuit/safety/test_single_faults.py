@@ -11,7 +11,7 @@ from tests.circuit.delivery.replay import Held, Player, exposure
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Drive, Limits, Rig, gate
 from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
-from thermicon.circuit.safety.demanded import healthy_C, longest_rest_s, shown_between, zero_current_s
+from thermicon.circuit.safety.demanded import zero_current_s
 from thermicon.circuit.safety.demands import CutOff, SingleFault
 from thermicon.circuit.safety.display import DisplayPlant
 from thermicon.circuit.safety.ensemble import Ensemble, between
@@ -21,6 +21,7 @@ from thermicon.circuit.safety.gate import Gate, gate_set
 from thermicon.circuit.safety.held import SENSOR_K, HeldSkin, around_C, one_stage, two_stages
 from thermicon.circuit.safety.polarity import TEST_A, TEST_S, least_fall_K, polarity_check, where_tests_begin
 from thermicon.circuit.safety.repeated import Repeating
+from thermicon.circuit.safety.shown import healthy_C, longest_rest_s, shown_between
 from thermicon.circuit.safety.single_faults import Faulty, Moments
 from thermicon.circuit.safety.starts import Beginning, Starts
 from thermicon.circuit.safety.stuck_rate import limited
