@@ -84,6 +84,6 @@ def means(time_s: Array, drive: Array, span_s: float) -> tuple[Array, Array]:
     steps = np.diff(time_s)
     begins = np.diff(np.floor((time_s[:-1] - time_s[0]) / span_s + 1e-6), prepend=-1.0) > 0
     long = steps > (1.0 + 1e-6) * span_s
-    at = np.flatnonzero(np.append(begins | long | np.append(False, long[:-1]), True))
+    at = np.flatnonzero(np.append(begins | long, True))
     total = np.append(0.0, np.cumsum(drive[:-1] * steps))[at]
     return time_s[at], np.append(np.diff(total) / np.diff(time_s[at]), drive[-1])

@@ -132,6 +132,9 @@ def test_how_long_a_log_lasts_does_not_depend_on_when_it_began() -> None:
         short = {"time_s": time_s[:81] + begin_s, "current_A": time_s[:81], "display_C": time_s[:81]}
         with pytest.raises(LogError, match="is known for 4 s"):
             runs_of([Log.of("short.csv", short)])
+        late = {name: values[-4000:] for name, values in columns.items()}
+        (whole,) = runs_of([Log.of("whole.csv", {"time_s": time_s[-4000:] + begin_s, **late})])
+        assert len(whole.time_s) == 4000, "of 200 s nothing is left out, though the drive changes late"
         (run,) = runs_of([Log.of("long.csv", {"time_s": time_s + begin_s, **columns})])
         parts.append((run.begin_s - begin_s, run.time_s[-1], run.channels[0].time_s[0] - begin_s, *run.notes))
     assert parts[0][:3] == pytest.approx(parts[1][:3])
