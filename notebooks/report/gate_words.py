@@ -88,7 +88,7 @@ def stuck_text(gates: Sequence[Named]) -> str | None:
 
 
 def stuck_fast_text(gates: Sequence[Named]) -> str | None:
-    """The effect of a stuck driver where the icons need a current that moves the skin too fast; None where none does."""
+    """The effect of a stuck driver where icons need a current that moves the skin too fast; None where none does."""
     from thermicon.circuit.safety.words import fault_cure
 
     faults = [fault for _, gate in gates for fault in gate.demands.faults if fault.kind == "stuck fast"]
