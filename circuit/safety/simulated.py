@@ -26,6 +26,9 @@ CLOSE_K = 2e-5
 MOST_PLAYS, REMEMBERED = 40, 6
 """Most plays in a search, and the number of past plays that the acceleration uses."""
 
+PLAIN_PLAYS = 10
+"""So many plays from rest come nearer to a cycle that plays lead to; another one may return to itself, too."""
+
 After = Callable[[State], State]
 """States before the next play, for those before this one."""
 
@@ -48,17 +51,23 @@ def steady_cycle(after: After, played: PlayMap, start: State) -> State:
     Each play is followed by the fixed point of its map `played` on an ideal heat sink, moved to what came out. That is
     repeated with Anderson's acceleration, one lane at a time: the next guess is the mean of the last results whose
     changes cancel best. A lane heats without limit where its map does; raises UnjudgedError where another one does not
-    settle, as on a heat sink that is too weak.
+    settle, or on what plays from rest do not approach, as on a heat sink that is too weak.
     """
     free = start.nodes_C.shape[1] - 1
     heats = ~played.fixed_point()[1]
-    guess = _joined(after(start))  # the controller of a heat sink has begun here
+    plain = start
+    for _ in range(PLAIN_PLAYS):
+        plain = after(plain)
+    guess = np.where(heats[:, np.newaxis], _joined(start), _joined(plain))
     guesses, results = list[Array](), list[Array]()
     for _ in range(MOST_PLAYS):
         result = _joined(after(_parted(guess, start)))
         unsettled = np.flatnonzero(~heats & (_change(result - guess) > CLOSE_K))
         if not len(unsettled):
-            result[heats, :free] = HOTTEST_C
+            before, later = (_change((_joined(state) - result)[:, :free]) for state in (start, plain))
+            if (later > before + CLOSE_K)[~heats].any():
+                break
+            result[:, :free] = np.where(heats[:, np.newaxis], HOTTEST_C, np.minimum(result[:, :free], HOTTEST_C))
             return _parted(result, start)
         moved = result.copy()
         moved[:, :free] = played.through(guess[:, :free], result[:, :free]).fixed_point()[0]
