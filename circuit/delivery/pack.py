@@ -55,10 +55,10 @@ def pack(
     shared: dict[str, bytes] = {}
     if form.player is not None and ready:
         played = []
-        for cue, name, (drive, _) in zip(ready, names, drives, strict=True):
+        for cue, name, (drive, content) in zip(ready, names, drives, strict=True):
             judged, repeated = cue.verdict.colour, cue.verdict.repeated
             times = repeated.recovery_s, repeated.shortest_pause_s
-            played.append(Played(cue.delivery, drive, sidecar_name(name, form), judged, *times))
+            played.append(Played(cue.delivery, drive, sidecar_name(name, form), judged, *times, content))
         shared = form.player(played, Demands.strictest([cue.verdict.demands for cue in ready]))
     files: dict[str, bytes] = {}
     for cue, name, (drive, content) in zip(ready, names, drives, strict=True):
