@@ -49,7 +49,7 @@ class Guard:
         self._asked_s = self._fed_s = -math.inf
         self._levels_C: dict[str, float] = {}
         self._look_s, self._slowest = 0.0, ("", 0.0)
-        self._is_timing = self._on = False
+        self._is_timing = self._on = self._is_blind = False
         self._why = ""
         self._watch.forget()
 
@@ -146,7 +146,7 @@ class Guard:
                 raise
             if self._look is None or self._look.done.is_set():  # one that hangs still counts
                 self._look, self._asked_s = None, -math.inf
-            self._due_s, self._plan, self._levels_C = self._now_s, plan, {}
+            self._due_s, self._plan, self._levels_C, self._is_blind = self._now_s, plan, {}, False
 
     def _run(self) -> None:
         """Take steps until the plan has ended."""
@@ -168,7 +168,7 @@ class Guard:
         if look is not None and until_s > now_s and look.done.wait(until_s - now_s):
             return
         now_s = float(self._clock())
-        left_s = until_s - now_s
+        left_s = min(until_s - now_s, CLOCK_STANDS_S)
         if not left_s > NOTHING_S:
             return
         self._sleep(left_s)
@@ -194,8 +194,8 @@ class Guard:
             raise
         if self._look is not None:
             return self._asked_s + self._answer_s + 2.0 * NOTHING_S
-        plan_s = self._due_s if self.busy else math.inf
-        return min(plan_s, self._asked_s + self._numbers().look_every_s, self._fed_s + FEED_EVERY_S)
+        look_s = math.inf if self._is_blind else self._asked_s + self._numbers().look_every_s
+        return min(self._due_s if self.busy else math.inf, look_s, self._fed_s + FEED_EVERY_S)
 
     def _check_clock(self, now_s: float) -> None:
         """A clock that goes back, or is not a number, would switch off every guard and stops."""
@@ -216,6 +216,7 @@ class Guard:
         if look is not None and is_back:
             self._look, self._look_s, self._slowest = None, look.took_s, look.slowest(gap_s)
             self._levels_C = look.levels_C()
+            self._is_blind = not self._levels_C
             if not self.busy:  # between plays nobody promises to call keep() in time
                 gap_s = look.took_s
         is_watched = look is not None or (self._levels_C and self.busy)
@@ -251,7 +252,7 @@ class Guard:
     def _ask(self) -> None:
         """Begin a look where one is due."""
         assert self._line is not None
-        if self._now_s < self._asked_s + self._numbers().look_every_s - NOTHING_S:
+        if self._is_blind or self._now_s < self._asked_s + self._numbers().look_every_s - NOTHING_S:
             return
         sensors: dict[str, Callable[[], float | None]] = {"sensor": self._line.read}
         if self._second_C is not None:
@@ -267,9 +268,9 @@ class Guard:
     def _preparing(self, rows: Sequence[Any]) -> Iterator[float]:
         for row in rows:
             self._send(row)
+        yield self._now_s
         if not self.rested:
             self._held_s = self._now_s
-        yield self._now_s
 
     def _resting(self, row: Any) -> Iterator[float]:
         """Hold the rest, and a pause at least: nobody knows what played before this program began or was reset."""
@@ -363,6 +364,7 @@ class Guard:
             playing = self._line.send(row)
         if self._aborted.is_set():
             raise Stopped(self._why)
+        self._check_clock(float(self._clock()))  # a slow line took a while
         return playing
 
     def _test(self, current_A: float) -> bool:

@@ -104,15 +104,19 @@ NI = f'''
 _lines = {{}}
 
 
-def _line(measured_C=None):
-    line = _lines.setdefault(CHANNEL, NiLine(CHANNEL, OFF_V, V_PER_A))
+def _line():
+    return _lines.setdefault((CHANNEL, OFF_V, V_PER_A), NiLine(CHANNEL, OFF_V, V_PER_A))
+
+
+def _measured(measured_C):
+    line = _line()
     line.measured_C = measured_C
     return line
 
 
 def rest(drive_file, measured_C=None, second_C=None):
 {REST.format("what a drive begins with")}
-    _guard.rest(_line(measured_C), _rows(drive_file, "command_V")[1][0], second_C)
+    _guard.rest(_measured(measured_C), _rows(drive_file, "command_V")[1][0], second_C)
 
 
 def play(drive_file, measured_C=None, second_C=None):
@@ -120,7 +124,7 @@ def play(drive_file, measured_C=None, second_C=None):
     times, volts = _rows(drive_file, "command_V")
     rate = (len(times) - 1) / times[-1]
     rows = [(0.0, (volts, rate)), (len(volts) / rate, None)]
-    _guard.play(_line(measured_C), rows, volts[0], _course(drive_file), second_C)
+    _guard.play(_measured(measured_C), rows, volts[0], _course(drive_file), second_C)
 
 
 def _off():
@@ -154,8 +158,12 @@ TCS2 = f'''
 _lines, _prepared = {{}}, []
 
 
-def _line(port, measured_C=None):
-    line = _lines.setdefault(id(port), Tcs2Line(port))
+def _line(port):
+    return _lines.setdefault(id(port), Tcs2Line(port))
+
+
+def _measured(port, measured_C):
+    line = _line(port)
     line.measured_C = measured_C
     return line
 
@@ -174,7 +182,7 @@ def rest(port, measured_C=None, second_C=None):
 {REST.format("the baseline of what was prepared")}
     if not _prepared:
         raise Refused("nothing was prepared: call prepare(port, drive_file) first")
-    _guard.rest(_line(port, measured_C), None, second_C)
+    _guard.rest(_measured(port, measured_C), None, second_C)
 
 
 def play(port, measured_C=None, second_C=None):
@@ -183,7 +191,7 @@ def play(port, measured_C=None, second_C=None):
         raise Refused("nothing was prepared: call prepare(port, drive_file) first")
     watch = measured_C is not None or second_C is not None
     end_s, course = _prepared
-    _guard.play(_line(port, measured_C), [(0.0, "L"), (end_s, None)], None, course, second_C, watch)
+    _guard.play(_measured(port, measured_C), [(0.0, "L"), (end_s, None)], None, course, second_C, watch)
 
 
 def connect():

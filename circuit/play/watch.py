@@ -75,7 +75,7 @@ class Watch:
     def expect(self, points: Sequence[tuple[float, float]] = (), begin_s: float = 0.0) -> None:
         """Begin a stretch in which the display is predicted to have these °C by time; none: anything."""
         self._points, self._begin_s = points, begin_s
-        self._stays: dict[str, tuple[float, float]] = {}
+        self._stays: dict[str, tuple[float, float, float]] = {}
         # A display that stays where it must not be does so across stretches, and in pauses without a look.
         self._since = {name: since_s for name, since_s in self._since.items() if name.endswith("held")}
 
@@ -121,7 +121,7 @@ class Watch:
         if len(spans) < 2:
             return
         apart_K = max(spans[0][0] - spans[1][1], spans[1][0] - spans[0][1])
-        if self._lasts("apart", apart_K > APART_K, now_s) >= APART_S:
+        if self._lasts("apart", apart_K > APART_K, now_s) > APART_S:
             first_C, second_C = levels_C.values()
             raise Stopped(
                 f"the sensors are {apart_K:.2f} K apart, at {first_C:.2f} and {second_C:.2f} degrees C, more than "
@@ -130,31 +130,31 @@ class Watch:
 
     def _check_beside(self, levels_C: Mapping[str, float], asked_s: float, now_s: float) -> None:
         """A loop holds its display at the prediction, which is exact enough to judge it by."""
-        if not self._points or not levels_C or not self._numbers().closed_loop:
+        if not self._points or not self._numbers().closed_loop:
             return
         due_C = self._due_C(asked_s, now_s)
-        now_C = next(iter(levels_C.values()))
-        beside_K = max(min(due_C) - now_C, now_C - max(due_C))
-        if self._lasts("beside", beside_K > BESIDE_K, now_s) >= BESIDE_S:
-            raise Stopped(
-                f"the display is at {now_C:.2f} degrees C, {beside_K:.2f} K from its prediction for {BESIDE_S:g} s, "
-                f"more than {BESIDE_K:g} K: a wrong sensor, swapped wires, or another loop"
-            )
+        for name, now_C in levels_C.items():
+            beside_K = max(min(due_C) - now_C, now_C - max(due_C))
+            if self._lasts(f"{name} beside", beside_K > BESIDE_K, now_s) > BESIDE_S:
+                raise Stopped(
+                    f"the display is at {now_C:.2f} degrees C by the {name}, {beside_K:.2f} K from its prediction for "
+                    f"{BESIDE_S:g} s, more than {BESIDE_K:g} K: a wrong sensor, swapped wires, or another loop"
+                )
 
     def _check_frozen(self, levels_C: Mapping[str, float], now_s: float) -> None:
-        """A reading that stays while the display moves: by the other sensor, or by the prediction where it is alone."""
-        numbers = self._numbers()
+        """A reading that stays when the other sensor moves, or where that stays too or is not there, the prediction."""
+        numbers, due_C = self._numbers(), self._due_C(now_s, now_s)[0]
         for name, now_C in levels_C.items():
-            others_C = [level_C for other, level_C in levels_C.items() if other != name]
-            moves_C = others_C[0] if others_C else self._due_C(now_s, now_s)[0]
-            last_C, from_C = self._stays.get(name, (math.nan, moves_C))
+            other_C = next((level_C for other, level_C in levels_C.items() if other != name), math.nan)
+            last_C, other_from_C, due_from_C = self._stays.get(name, (math.nan, other_C, due_C))
             if now_C != last_C:
-                from_C = moves_C
-            self._stays[name] = now_C, from_C
-            moved_K = abs(moves_C - from_C)
+                other_from_C, due_from_C = other_C, due_C
+            self._stays[name] = now_C, other_from_C, due_from_C
+            is_alone = math.isnan(other_C) or other_C == other_from_C
+            moved_K = abs(due_C - due_from_C if is_alone else other_C - other_from_C)
             if self._lasts(name, moved_K > FROZEN_STEPS * numbers.sensor_step_K, now_s) > numbers.frozen_s:
-                how = "the other one moved by {:.2f} K" if others_C else "{:.2f} K were predicted"
-                raise Stopped(f"the {name} is frozen: it has read {now_C:.3f} degrees C while {how.format(moved_K)}")
+                how = f"{moved_K:.2f} K were predicted" if is_alone else f"the other one moved by {moved_K:.2f} K"
+                raise Stopped(f"the {name} is frozen: it has read {now_C:.3f} degrees C while {how}")
 
     def _due_C(self, from_s: float, to_s: float) -> list[float]:
         """The predicted °C at two times and at all points between them; 0 without a prediction."""

@@ -17,6 +17,7 @@ import pytest
 
 from tests.circuit.daq import Daq
 from tests.circuit.delivery.one_drive import changed, icon_of, prepare
+from tests.circuit.serial_line import Ports, Serial
 from tests.circuit.verdicts import LOOP, MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import load_format
@@ -36,6 +37,9 @@ class Clock:
 
     def monotonic(self) -> float:
         return self.now
+
+    def passes(self, seconds: float) -> None:
+        self.now += seconds
 
     def sleep(self, seconds: float) -> None:
         assert seconds > 0
@@ -67,8 +71,8 @@ class Bench:
         self.player["POLARITY_SEEN"] = "A. Name, today"
         self.reading = 32.0
         self.noise = 0.001
-        self.sent: list[bytes] = []
-        self.port = types.SimpleNamespace(write=self.sent.append)
+        self.port = Serial(self.clock.passes)
+        self.sent = self.port.commands
 
     def measured(self) -> float:
         """A live reading: its last digit moves."""
@@ -324,7 +328,7 @@ class TestThermode:
         assert b"L" not in tcs.sent
         tcs.player["play"](tcs.port)
         assert tcs.sent == tcs.files[tcs.drive].split()
-        assert tcs.clock.now == pytest.approx(130.0)
+        assert tcs.clock.now == pytest.approx(130.0, abs=0.02)  # with 0.01 s of line
         with pytest.raises(RuntimeError, match=r"wait 28\.0 s more"):  # 8 s of icon and 20 s of pause
             tcs.player["play"](tcs.port)
 
@@ -337,7 +341,7 @@ class TestThermode:
         tcs.player["reset"]()
         began = tcs.clock.now
         tcs.player["play"](tcs.port)
-        assert tcs.clock.now == pytest.approx(began + 30.0)
+        assert tcs.clock.now == pytest.approx(began + 30.0, abs=1e-3)
 
     def test_a_profile_that_ends_early_is_not_sent(self, tcs: Bench) -> None:
         Path(tcs.path).write_bytes(tcs.files[tcs.drive][:-9])
