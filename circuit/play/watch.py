@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 SENSOR_LOWEST_C, SENSOR_HIGHEST_C = -20.0, 120.0  # a thermistor that is open or shorted reads far outside these
 FROZEN_STEPS = 3.0
+LATER_S = 0.5  # a sensor that is late by 0.3 s still moves so long after the other one has come to stay
 APART_K, APART_S = 1.0, 0.3  # two sensors of one display; healthy ones come to 0.98 K at an instant
 BESIDE_K, BESIDE_S = 1.5, 1.0  # a loop's display and its prediction; healthy ones come to 0.89 K for a second
 UNSUPERVISED_S = 1.0  # between two looks where no cut-off is quick enough
@@ -75,7 +76,7 @@ class Watch:
     def expect(self, points: Sequence[tuple[float, float]] = (), begin_s: float = 0.0) -> None:
         """Begin a stretch in which the display is predicted to have these °C by time; none: anything."""
         self._points, self._begin_s = points, begin_s
-        self._stays: dict[str, tuple[float, float, float]] = {}
+        self._stays: dict[str, tuple[float, float, float, float]] = {}
         # A display that stays where it must not be does so across stretches, and in pauses without a look.
         self._since = {name: since_s for name, since_s in self._since.items() if name.endswith("held")}
 
@@ -146,10 +147,12 @@ class Watch:
         numbers, due_C = self._numbers(), self._due_C(now_s, now_s)[0]
         for name, now_C in levels_C.items():
             other_C = next((level_C for other, level_C in levels_C.items() if other != name), math.nan)
-            last_C, other_from_C, due_from_C = self._stays.get(name, (math.nan, other_C, due_C))
+            last_C, since_s, other_from_C, due_from_C = self._stays.get(name, (math.nan, now_s, other_C, due_C))
             if now_C != last_C:
+                since_s = now_s
+            if now_s - since_s <= LATER_S:
                 other_from_C, due_from_C = other_C, due_C
-            self._stays[name] = now_C, other_from_C, due_from_C
+            self._stays[name] = now_C, since_s, other_from_C, due_from_C
             is_alone = math.isnan(other_C) or other_C == other_from_C
             moved_K = abs(due_C - due_from_C if is_alone else other_C - other_from_C)
             if self._lasts(name, moved_K > FROZEN_STEPS * numbers.sensor_step_K, now_s) > numbers.frozen_s:

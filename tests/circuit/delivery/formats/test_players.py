@@ -5,7 +5,6 @@ import hashlib
 import io
 import re
 import sys
-import types
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
@@ -17,7 +16,7 @@ import pytest
 
 from tests.circuit.daq import Daq
 from tests.circuit.delivery.one_drive import changed, icon_of, prepare
-from tests.circuit.serial_line import Ports, Serial
+from tests.circuit.serial_line import Serial
 from tests.circuit.verdicts import LOOP, MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import load_format
