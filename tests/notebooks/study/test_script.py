@@ -53,10 +53,11 @@ def test_a_simulated_run_writes_answers_and_events(quick: Path, done: Path) -> N
 
 
 def test_the_scripts_need_neither_thermicon_nor_psychopy_to_be_simulated(quick: Path) -> None:
-    for name in ("run_study.py", "study_bench.py"):
+    own = {"study_answers", "study_bench"}
+    for name in ("run_study.py", "study_answers.py", "study_bench.py", "study_simulated.py"):
         lines = (quick / name).read_text(encoding="utf-8").splitlines()
         imported = {line.split()[1].partition(".")[0] for line in lines if line.startswith(("import ", "from "))}
-        assert imported <= sys.stdlib_module_names
+        assert imported <= sys.stdlib_module_names | own
 
 
 def test_pauses_landings_and_breaks_are_kept(quick: Path, done: Path) -> None:
@@ -183,6 +184,50 @@ def test_the_abort_key_ends_at_once_wherever_it_comes(at_s: float, words: str, s
     assert "ABORTED by key; the display is off" in stopped.stdout
     minutes = float(stopped.stdout.partition("answers after ")[2].split()[0])
     assert minutes == pytest.approx(at_s / 60.0, abs=0.06)
+
+
+def changed_player(quick: Path, folder: Path, text: str) -> Path:
+    """A copy of the study whose player goes on with some text."""
+    study = Path(shutil.copytree(quick, folder / "study"))
+    with (study / "play_icons.py").open("a", encoding="utf-8") as file:
+        file.write(text)
+    return study
+
+
+KEEPS = """
+_kept = [0.0]
+def keep():
+    _kept.append(time.monotonic())
+    if time.monotonic() - _kept[-2] > 0.02:
+        with open("GAPS", "a") as file:
+            file.write(f"{time.monotonic() - _kept[-2]}\\n")
+"""
+
+
+def test_the_device_is_kept_awake_whenever_no_play_does_it(quick: Path, tmp_path: Path) -> None:
+    """A watchdog of a second: the loop that reads the keys feeds it; a rest and ten plays of 3 s feed it themselves."""
+    study = changed_player(quick, tmp_path, KEEPS.replace("GAPS", str(tmp_path / "gaps")))
+    assert run_script(study, tmp_path, "--participant", "A", "--simulate").returncode == 0
+    gaps_s = [float(line) for line in (tmp_path / "gaps").read_text(encoding="utf-8").split()]
+    assert len(gaps_s) == 11 and all(gap_s == pytest.approx(3.01, abs=0.1) for gap_s in gaps_s[1:])
+
+
+@pytest.mark.parametrize(
+    ("text", "ending"),
+    [
+        (
+            "def keep():\n    if time.monotonic() > 60: raise Stopped('the display is at 60 C')",
+            "SWITCHED OFF: the display",
+        ),
+        ("_off = None", "NOT SWITCHED OFF, do that by hand at once ('NoneType' object is not callable): 'NoneType'"),
+        ("import nidaqmx\nnidaqmx.Task()", "NOT SWITCHED OFF, do that by hand at once (tasks that nobody closed: 1): "),
+    ],
+    ids=["stopped between plays", "off fails", "a task stays open"],
+)
+def test_what_goes_wrong_is_the_ending_and_never_done(text: str, ending: str, quick: Path, tmp_path: Path) -> None:
+    ran = run_script(changed_player(quick, tmp_path, f"\n{text}\n"), tmp_path, "--participant", "A", "--simulate")
+    assert (ran.returncode, ran.stderr) == (3, "")
+    assert f"A: {ending}" in ran.stdout and "done" not in ran.stdout
 
 
 PSYCHOPY = {
