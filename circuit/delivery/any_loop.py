@@ -19,7 +19,8 @@ import numpy as np
 from thermicon.icons.number_text import signed
 
 from ..arrays import Array
-from ..safety.checks import Before, Check, CutOff, Scenario, worst_of
+from ..safety.checks import Before, Check, Scenario, worst_of
+from ..safety.demands import CutOff
 from ..safety.ensemble import LaneDrives
 from ..safety.held import BEYOND_K, inwards
 from ..safety.single_faults import AFTER_ROWS_S, HANG_ROWS_S

@@ -15,9 +15,10 @@ from thermicon.icons.number_text import signed
 
 from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K
-from ..safety.checks import Check, CutOff, Demands, Loop, Scenario, SingleFault, worst_of
+from ..safety.checks import Check, Scenario, worst_of
 from ..safety.current import checks_of_lanes
 from ..safety.demanded import polarity_check
+from ..safety.demands import CutOff, Demands, Loop, SingleFault
 from ..safety.display import DisplayCourse, DisplayPlant
 from ..safety.gate import Gate, gate_shown
 from ..safety.held import BEYOND_K

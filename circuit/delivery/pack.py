@@ -9,11 +9,12 @@ from typing import Any
 
 from ..program import own_version, this_program
 from ..records import Record
+from ..safety.demands import Demands
 from ..safety.verdict import summarise
 from .delivered_drive import DeliveredDrive, loss_table
 from .device import Device
 from .formats import Format, FormatError
-from .formats.form import Played, events_in, must_prevent
+from .formats.form import Played, events_in
 from .prepare import Prepared, Refusal
 from .setpoints import Setpoints, lag_of
 
@@ -58,7 +59,7 @@ def pack(
             judged, repeated = cue.verdict.colour, cue.verdict.repeated
             times = repeated.recovery_s, repeated.shortest_pause_s
             played.append(Played(cue.delivery, drive, sidecar_name(name, form), judged, *times))
-        shared = form.player(played, must_prevent([cue.verdict.demands for cue in ready]))
+        shared = form.player(played, Demands.strictest([cue.verdict.demands for cue in ready]))
     files: dict[str, bytes] = {}
     for cue, name, (drive, content) in zip(ready, names, drives, strict=True):
         over = [str(refusal) for refusal in cue.refusals]

@@ -21,7 +21,8 @@ from ..solver.batch_inputs import Bank, Intervals, State, run_on
 from ..solver.drive import Drive
 from ..solver.network import unpowered
 from ..solver.steady import state_under_current
-from .checks import Before, Check, Demands, Scenario
+from .checks import Before, Check, Scenario
+from .demands import Demands
 from .ensemble import Ensemble, LaneDrives, row_of
 from .plant import ENDING_ROWS_S, LATE_S, LATER_S, OFF_ROWS_S, Future, Plant, Single, Stretch
 from .playmap import MOST_STEPS, PlayMap, bound, least_bound, steady_cycle

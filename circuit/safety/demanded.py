@@ -12,8 +12,9 @@ from ..arrays import Array
 from ..rig.rules import Limits
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
-from .checks import Check, CutOff, Demands, PolarityCheck, Scenario, SingleFault, colour_of, findings_of
+from .checks import Check, Scenario, colour_of, findings_of
 from .current import CurrentPlant, CurrentPlay
+from .demands import CutOff, Demands, PolarityCheck, SingleFault
 from .ensemble import Ensemble
 from .exposure import cem43_min
 from .held import BEYONDS_K, around_C, held_C, stays
@@ -23,6 +24,8 @@ from .single_faults import STUCK_SHARES, Faulty
 from .starts import Beginning
 from .tally import HOTTEST_C, WATCHED, Tally
 
+OFF_S = 10.0
+"""So long the output is off before the polarity is tested."""
 TEST_A, TEST_S = 0.3, 2.0
 """A current small enough for any module and skin, for long enough to be seen by any thermistor."""
 
@@ -205,7 +208,7 @@ def polarity_check(faulty: Faulty) -> tuple[PolarityCheck, SingleFault]:
     fall = float((display[:, 0] - display[:, -1]).min())
     needed = not tally.passes()
     least_K = math.floor(50.0 * fall) / 100.0
-    check = PolarityCheck(needed, test_A, TEST_S, least_K, (round(low, 1), round(high, 1)))
+    check = PolarityCheck(needed, OFF_S, test_A, TEST_S, least_K, (round(low, 1), round(high, 1)))
     return check, SingleFault("swapped", colour_of(findings_of(tally.checks())), {"check": check})
 
 

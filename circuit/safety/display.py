@@ -19,8 +19,9 @@ from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..solver.modes import FELT, SkinModes, modes_of
-from .checks import Check, CutOff, Demands, SingleFault, colour_of, worst_of
+from .checks import Check, colour_of, worst_of
 from .corners import contact_corners
+from .demands import CutOff, Demands, SingleFault
 from .held import Span, around_C, held_C, stays
 from .plant import ENDING_ROWS_S, ENDING_S, LATE_S, OFF_ROWS_S, Future, Plant, Single, Stretch, left_s
 from .playmap import PlayMap, least_bound

@@ -12,8 +12,9 @@ from ..rig.rig import AnyRig, Rig
 from ..rig.rules import Limits
 from ..rig.uncertainty import Uncertainty, tightened
 from ..solver.drive import Drive, DriveError
-from .checks import Check, Demands, Judged, colour_of, findings_of, hard_of, hard_reason, worst_of
+from .checks import Check, Judged, colour_of, findings_of, hard_of, hard_reason, worst_of
 from .current import CurrentPlant, CurrentPlay
+from .demands import Demands
 from .display import DisplayCourse, DisplayPlant
 from .ensemble import Ensemble
 from .plant import ENDING_S, Plant, Played, Single, States

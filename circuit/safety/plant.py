@@ -15,8 +15,9 @@ import numpy as np
 from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rules import Limits
-from .checks import Check, Demands, Scenario, worst_of
+from .checks import Check, Scenario, worst_of
 from .corners import Corner
+from .demands import Demands
 from .tally import WATCHED, Tally
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from ..arrays import Array, Index
 from ..rig.rules import Limits
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
-from .checks import CutOff, Harm, SingleFault
+from .demands import CutOff, Harm, SingleFault
 from .ensemble import Ensemble, between
 from .held import COLUMN_OF
 from .tally import WATCHED

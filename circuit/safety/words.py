@@ -11,7 +11,8 @@ from thermicon.icons.number_text import signed, significant, unit_text
 
 from ..inputs import shipped_table
 from ..rig.uncertainty import WORDS
-from .checks import Check, Cure, Harm, Scenario, SingleFault, cures_of, hard_of, hard_reason
+from .checks import Check, Cure, Scenario, cures_of, hard_of, hard_reason
+from .demands import Harm, SingleFault
 from .plant import ENDING_S
 from .repeated import PRACTICAL_S, Repeated
 

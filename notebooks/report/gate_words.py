@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
     from thermicon.circuit.delivery.prepare import Prepared
     from thermicon.circuit.delivery.worstcase import OpenLoopSpread
-    from thermicon.circuit.safety.checks import Demands
+    from thermicon.circuit.safety.demands import Demands
     from thermicon.circuit.safety.gate import Gate
     from thermicon.circuit.safety.repeated import Repeated
 

@@ -2,10 +2,12 @@
 
 from types import SimpleNamespace
 
-from thermicon.circuit.safety.checks import CutOff, Demands, Loop, PolarityCheck
+from thermicon.circuit.safety.demands import CutOff, Demands, Loop, PolarityCheck
 
 CUT_OFF = CutOff(low=20.0, high=40.0, react_within_s=0.1)
-POLARITY = PolarityCheck(True, test_current_A=0.2, test_s=0.5, display_change_at_least_K=0.15, swapped_skin_C=(31, 33))
+POLARITY = PolarityCheck(
+    True, off_before_s=10.0, test_current_A=0.2, test_s=0.5, display_change_at_least_K=0.15, swapped_skin_C=(31, 33)
+)
 LOOP = Loop((0.1, 0.2), (0.02, 0.05), 0.0, 0.02, 0.1, 0.3, 3.0, (0.19, 0.21), (0.04, 0.06), 0.1)
 MADE_UP = Demands(
     0.4, CUT_OFF, POLARITY, rest_before_first_play_s=30.0, pause_at_least_s=20.0, zero_current_at_most_s=None, faults=()

@@ -14,6 +14,7 @@ from thermicon.icons.model.clean_text import clean_line
 
 from ...arrays import Array
 from ...inputs import shipped_text
+from ...safety.demands import Demands
 from ..delivered_drive import DeliveredDrive
 from .form import (
     PLAYS_SAMPLES,
@@ -21,7 +22,6 @@ from .form import (
     Column,
     Format,
     FormatError,
-    MustPrevent,
     Played,
     course_C,
     samples_of,
@@ -120,7 +120,7 @@ def identifier(name: str) -> str:
     return plain if re.match(r"[A-Za-z]", plain) and plain.casefold() != "stdint" else f"icon_{plain}"
 
 
-def player_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
+def player_files(drives: Sequence[Played], demands: Demands) -> dict[str, bytes]:
     """Return the player for drives of one device, with the numbers that the hardware must keep to."""
     first = drives[0].delivery
     down, up = partial(c_float, toward=-math.inf), partial(c_float, toward=math.inf)
@@ -128,22 +128,25 @@ def player_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes
     courses = {identifier(each.delivery.icon.name): course_C(each.delivery, COURSE_S) for each in drives}
     if first.device.kind.regulated:  # the set-point is what the display is to do
         courses = dict.fromkeys(courses, np.zeros(0))
+    cut, test, loop = demands.cut_off_display_C, demands.test, demands.loop
+    gains = loop.played if loop else (0.0, 0.0, 0.0)
+    limits_A = demands.current_limit_A or (0.0, 0.0)
     numbers = {
         "CLOSED_LOOP": str(int(first.device.kind.regulated)),
-        "WATCHDOG_S": down(must.watchdog_s),
-        "LOW_C": up(must.low_C),
-        "HIGH_C": down(must.high_C),
-        "REACT_S": down(must.act_within_s),
-        "REST_S": up(must.rest_s),
-        "PAUSE_S": up(must.pause_s),
-        "TEST_POLARITY": str(int(must.test_polarity)),
-        "TEST_COMMAND": inward(command_for(first, must.test_current_A)),
+        "WATCHDOG_S": down(demands.watchdog_s),
+        "LOW_C": up(cut.low),
+        "HIGH_C": down(cut.high),
+        "REACT_S": down(cut.act_within_s),
+        "REST_S": up(demands.rest_s),
+        "PAUSE_S": up(demands.pause_s),
+        "TEST_POLARITY": str(int(test is not None)),
+        "TEST_COMMAND": inward(command_for(first, test.test_current_A) if test else 0.0),
         "TEST_UNIT": OUTPUT_UNITS[first.device.driven_by],
-        "TEST_S": up(must.test_s),
-        "TEST_FALL_K": down(must.test_fall_K),
-        **dict(zip(("KP", "KI", "KD"), map(inward, must.gains), strict=True)),
-        **dict(zip(("LOWEST_A", "HIGHEST_A"), map(inward, must.limits_A), strict=True)),
-        "SECOND_SENSOR": str(int(must.second_sensor)),
+        "TEST_S": up(test.test_s if test else 0.0),
+        "TEST_FALL_K": down(test.display_change_at_least_K if test else 0.0),
+        **dict(zip(("KP", "KI", "KD"), map(inward, gains), strict=True)),
+        **dict(zip(("LOWEST_A", "HIGHEST_A"), map(inward, limits_A), strict=True)),
+        "SECOND_SENSOR": str(int(loop is not None)),
         "COURSE_MS": str(round(1e3 * COURSE_S)),
         "COURSES": "\n".join(_course(name, levels) for name, levels in courses.items()),
         "OUTPUT_UNIT": OUTPUT_UNITS[first.device.driven_by],

@@ -1,7 +1,7 @@
 """The interface of a drive file format: its description, its writer's input, the events that it can mark."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from importlib.util import find_spec
 from itertools import groupby, pairwise
 
@@ -12,7 +12,7 @@ from thermicon.icons.model.corners import Corners
 
 from ...arrays import Array
 from ...inputs import InputError
-from ...safety.checks import Demands
+from ...safety.demands import Demands
 from ...solver.inverse import baseline_C
 from ...solver.steady import steady_state
 from ..delivered_drive import DeliveredDrive
@@ -22,8 +22,6 @@ from ..samples import Samples
 PLAYS_SAMPLES = ("volts", "amperes", "duty")
 PLAYS_TEMPERATURES = ("temperatures",)
 
-
-QUICKEST_S = 0.01
 STILL = 1e-9
 """A slope below this, in K/s or A/s, counts as level."""
 LONGEST_NAME = 200
@@ -75,36 +73,6 @@ class Played:
 
 
 @dataclass(frozen=True, slots=True)
-class MustPrevent:
-    """The numbers of a player: s, °C, A and K. Cut-offs are on the measured display temperature.
-
-    Of a loop they are its gains, kp A/K, ki A/(K·s) and kd A·s/K, and its current limits. The defaults stand where the
-    gate states nothing: a test current that moves a plate of a few J/K by some tenths of a kelvin, a minute of pause,
-    as is usual in thermal studies, a loop so slow that no module makes it swing, and the current of most shipped rigs.
-    `watchdog_s` is 0 where no hang is safe: the cut-off protects then. `second_sensor`: the cut-off has one of its own.
-    """
-
-    watchdog_s: float = 0.5
-    low_C: float = 10.0
-    high_C: float = 43.0
-    react_within_s: float = 0.1
-    test_polarity: bool = True
-    test_current_A: float = 0.1
-    test_s: float = 1.0
-    test_fall_K: float = 0.1
-    rest_s: float = 60.0
-    pause_s: float = 60.0
-    gains: tuple[float, float, float] = (0.1, 0.02, 0.0)
-    limits_A: tuple[float, float] = (-1.5, 1.5)
-    second_sensor: bool = False
-
-    @property
-    def act_within_s(self) -> float:
-        """How quickly a player must act, in s; 0.01 where the gate finds nothing quick enough."""
-        return self.react_within_s or QUICKEST_S
-
-
-@dataclass(frozen=True, slots=True)
 class Format:
     """One kind of file: what it is called, which devices take it, where its layout is documented, and how to write it.
 
@@ -127,7 +95,7 @@ class Format:
     stem: Callable[[str], str] = str
     suffix_by: Callable[[DeliveredDrive], str] | None = None
     facts: Callable[[DeliveredDrive], dict[str, object]] | None = None
-    player: Callable[[Sequence[Played], MustPrevent], dict[str, bytes]] | None = None
+    player: Callable[[Sequence[Played], Demands], dict[str, bytes]] | None = None
     set_files: tuple[str, ...] = ()
     needs: str = ""
     fits: Callable[[Device], None] | None = None
@@ -206,31 +174,3 @@ def events_of(corners: Corners, lead_s: float = 0.0) -> tuple[Event, ...]:
 def _direction(a: tuple[float, float], b: tuple[float, float]) -> int:
     slope = (b[1] - a[1]) / (b[0] - a[0])
     return 0 if abs(slope) < STILL else 1 if slope > 0 else -1
-
-
-LONGEST_REST_S = 1800.0
-"""Held before the first play where the gate finds that 10 min of rest do not suffice."""
-
-
-def must_prevent(demands: Sequence[Demands]) -> MustPrevent:
-    """The strictest over a set of what the gate demands of each icon."""
-    cut_offs = [each.cut_off_display_C for each in demands]
-    tests = [each.polarity_check for each in demands if each.polarity_check and each.polarity_check.needed]
-    limits_A = [each.current_limit_A for each in demands if each.current_limit_A]
-    loop, plain = demands[0].loop, MustPrevent()  # loops are alike in all icons of a set
-    found = MustPrevent(
-        watchdog_s=min(each.watchdog_s for each in demands),
-        low_C=max(cut.low for cut in cut_offs),
-        high_C=min(cut.high for cut in cut_offs),
-        react_within_s=min(cut.react_within_s for cut in cut_offs),
-        test_polarity=bool(tests),
-        rest_s=max(LONGEST_REST_S if (rest := each.rest_before_first_play_s) is None else rest for each in demands),
-        pause_s=max(plain.pause_s if (pause := each.pause_at_least_s) is None else pause for each in demands),
-        limits_A=(max(low for low, _ in limits_A), min(high for _, high in limits_A)) if limits_A else plain.limits_A,
-        second_sensor=any(each.loop is not None for each in demands),
-    )
-    if tests:  # one test as a whole: what falls by so much was found for its current and its time
-        test = min(tests, key=lambda each: each.test_current_A * each.test_s)
-        found = replace(found, test_current_A=test.test_current_A, test_s=test.test_s)
-        found = replace(found, test_fall_K=test.display_change_at_least_K)
-    return replace(found, gains=loop.played if loop else plain.gains)

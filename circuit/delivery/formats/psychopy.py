@@ -9,10 +9,11 @@ import numpy as np
 
 from ...play.guard import Numbers
 from ...play.script import COURSE_EVERY_S, script
+from ...safety.demands import Demands
 from ..delivered_drive import DeliveredDrive
 from ..device import Device
 from .c_array import command_for
-from .form import Column, Format, FormatError, MustPrevent, Played, course_C, events_in, samples_of
+from .form import Column, Format, FormatError, Played, course_C, events_in, samples_of
 from .tables import CSV, SERIAL, SETPOINT_CSV, has_voltage, volts_of, write_rows
 
 SET_FILES = CONDITIONS, PLAYER = "conditions.csv", "play_icons.py"
@@ -58,7 +59,7 @@ def fits(device: Device) -> None:
         )
 
 
-def set_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
+def set_files(drives: Sequence[Played], demands: Demands) -> dict[str, bytes]:
     """Return conditions file and player for drives of one device, with what the hardware must prevent."""
     found = [_row(each) for each in drives]
     most = max(map(len, found))
@@ -69,7 +70,7 @@ def set_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
     rows = csv.DictWriter(text, header, restval="", lineterminator="\n")
     rows.writeheader()
     rows.writerows(found)
-    return {CONDITIONS: text.getvalue().encode("utf-8"), PLAYER: _player(drives, must)}
+    return {CONDITIONS: text.getvalue().encode("utf-8"), PLAYER: _player(drives, demands)}
 
 
 def _row(played: Played) -> dict[str, str]:
@@ -83,7 +84,7 @@ def _row(played: Played) -> dict[str, str]:
     return row | {column: f"{time:.9g}" for column, time in times.items() if time is not None}
 
 
-def _player(drives: Sequence[Played], must: MustPrevent) -> bytes:
+def _player(drives: Sequence[Played], demands: Demands) -> bytes:
     """The player for what the device takes: NI volts, a thermode's commands, or set-points sent one by one."""
     delivery = drives[0].delivery
     driven_by, device = delivery.device.driven_by, delivery.device
@@ -95,20 +96,23 @@ def _player(drives: Sequence[Played], must: MustPrevent) -> bytes:
     elif driven_by == "temperatures":  # a controller takes 0 V for a temperature, so that off is the rest
         on = "as set-points of a temperature controller on an NI analogue output"
         off_V = float(volts_of(device, samples_of(delivery).command[:1])[0])
-    within_s, polarity = must.act_within_s, must.test_polarity and driven_by == "volts"
+    cut = demands.cut_off_display_C
     numbers = Numbers(
-        low_C=must.low_C,
-        high_C=must.high_C,
-        look_every_s=0.5 * within_s,
-        late_s=min(within_s, must.watchdog_s or within_s),
-        rest_s=must.rest_s,
-        pause_s=must.pause_s,
-        second_sensor=must.second_sensor,
-        test_polarity=polarity,
-        test_command=command_for(delivery, must.test_current_A) if polarity else 0.0,
-        test_s=must.test_s,
-        test_fall_K=must.test_fall_K,
+        low_C=cut.low,
+        high_C=cut.high,
+        look_every_s=0.5 * cut.act_within_s,
+        late_s=min(cut.act_within_s, demands.watchdog_s or cut.act_within_s),
+        rest_s=demands.rest_s,
+        pause_s=demands.pause_s,
+        second_sensor=demands.loop is not None,
     )
+    if demands.test is not None and driven_by == "volts":
+        numbers = numbers._replace(
+            test_polarity=True,
+            test_command=command_for(delivery, demands.test.test_current_A),
+            test_s=demands.test.test_s,
+            test_fall_K=demands.test.display_change_at_least_K,
+        )
     courses_C = {each.file: course_C(each.delivery, COURSE_EVERY_S).tolist() for each in drives}
     return script(kind, on, numbers, courses_C, off_V).encode("utf-8")
 

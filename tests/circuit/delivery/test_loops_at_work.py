@@ -26,7 +26,7 @@ from thermicon.circuit import Device, Drive, Rig, simulate_current
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.safety.checks import CutOff, Demands
+from thermicon.circuit.safety.demands import CutOff, Demands
 from thermicon.circuit.safety.gate import Gate
 from thermicon.icons import Icon, load_library
 

@@ -10,9 +10,9 @@ import pytest
 from tests.circuit.delivery.replay import Held, Player, exposure
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Drive, Limits, Rig, gate
-from thermicon.circuit.safety.checks import CutOff, SingleFault
 from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.demanded import TEST_A, TEST_S, dose_time_s, polarity_check
+from thermicon.circuit.safety.demands import CutOff, SingleFault
 from thermicon.circuit.safety.display import DisplayPlant
 from thermicon.circuit.safety.ensemble import Ensemble, between
 from thermicon.circuit.safety.exposure import cem43_min
@@ -298,7 +298,7 @@ def test_everything_that_is_demanded_is_in_the_verdict() -> None:
     demanded = found.demanded
     assert set(demanded) == {
         "watchdog_s", "cut_off_display_C", "polarity_check", "rest_before_first_play_s", "pause_at_least_s",
-        "zero_current_at_most_s", "faults", "current_limit_A", "loop",
+        "zero_current_at_most_s", "faults", "held_cut_off_display_C", "current_limit_A", "loop",
     }  # fmt: skip
     assert demanded["current_limit_A"] is None, "the drive itself is the current"
     assert demanded["loop"] is None, "there is none"
