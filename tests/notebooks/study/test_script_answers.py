@@ -1,6 +1,7 @@
 """Answers of a study survive: kills, torn rows, a full disk, two runs at once."""
 
 import importlib
+import os
 import random
 import shutil
 import subprocess
@@ -229,6 +230,25 @@ def test_a_file_that_cannot_be_locked_is_told_and_not_taken_for_a_second_run(
     monkeypatch.setitem(sys.modules, "fcntl", types.SimpleNamespace(flock=no_locks, LOCK_EX=2, LOCK_NB=4))
     told = pytest.raises(module.NoDisk, match=r"No locks available; .* or give another --output")
     with told, module.claimed(tmp_path, "A"):
+        pytest.fail("it ran")
+
+
+def test_on_windows_a_byte_of_the_file_is_locked(module: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By a stand-in for msvcrt: `locking` locks bytes from where the file stands, and fails where another has them."""
+    held: set[tuple[int, int]] = set()
+
+    def locking(file: int, mode: int, count: int) -> None:
+        assert (mode, count) == (2, 1)
+        place = os.fstat(file).st_ino, os.lseek(file, 0, os.SEEK_CUR)
+        if place in held:
+            raise PermissionError(13, "Permission denied")
+        held.add(place)
+
+    monkeypatch.setitem(sys.modules, "fcntl", None)
+    monkeypatch.setitem(sys.modules, "msvcrt", types.SimpleNamespace(locking=locking, LK_NBLCK=2))
+    (tmp_path / "sub-A_task-quick.lock").write_bytes(b"left by a run that was killed")
+    refused = pytest.raises(SystemExit, match="participant A runs already")
+    with module.claimed(tmp_path, "A"), refused, module.claimed(tmp_path, "A"):
         pytest.fail("it ran")
 
 

@@ -191,6 +191,32 @@ def test_between_plays_the_player_keeps_the_device_awake_and_while_one_goes_on_i
         controller.keep()
 
 
+def test_commands_are_sent_to_a_thermode_while_the_keys_are_read(quick: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A line that takes its time, or hangs, must not keep the abort key from acting."""
+    bench, sends, calls = bench_of(quick, monkeypatch), threading.Event(), []
+
+    def prepare(port: str, drive_file: str) -> None:
+        sends.wait(5.0)
+        calls.append(("prepare", port, drive_file))
+
+    def rest(port: str, measured_C: object = None) -> None:
+        calls.append(("rest", port, measured_C))
+
+    player = types.SimpleNamespace(prepare=prepare, rest=rest, connect=lambda: player.PORT, keep=lambda: None)
+    monkeypatch.setattr(bench, "load", lambda path, name: player)
+    thermode = bench.Display("tcs2", types.SimpleNamespace(measured_C="sensor", second_C="another"), port="COM7")
+    thermode.rest("dip.txt")
+    assert thermode.busy and not calls
+    sends.set()
+    thermode._thread.join()
+    thermode.prepare("glow.txt")
+    thermode._thread.join()
+    assert calls == [("prepare", "COM7", "dip.txt"), ("rest", "COM7", "sensor"), ("prepare", "COM7", "glow.txt")]
+    del player.keep
+    with pytest.raises(SystemExit, match=r"play_icons\.py is older than this script: export the study again"):
+        bench.Display("tcs2")
+
+
 def test_abort_switches_off_although_the_player_cannot(controller: Any) -> None:
     controller.player.stopped = "the line is lost"
     with pytest.raises(RuntimeError, match="the line is lost"):
