@@ -1,6 +1,7 @@
 """The display of a study's script on simulated hardware: play without blocking, guards, stops."""
 
 import importlib
+import itertools
 import sys
 import threading
 import time
@@ -85,26 +86,24 @@ def test_the_rest_is_held_before_the_first_play(display: Any, quick: Path) -> No
 
 def test_abort_switches_off_while_a_sensor_hangs(display: Any, quick: Path) -> None:
     """The display is off at once; the thread that waits for the sensor is not waited for before."""
-    hangs, reads = threading.Event(), []
+    reads, hangs, answers = itertools.count(), threading.Event(), threading.Event()
 
     def measured_C() -> float:
-        reads.append(time.monotonic())
-        if len(reads) > 3:
-            hangs.wait(10.0)
-        return 32.0 + 0.001 * len(reads)
+        if any(isinstance(row, list) for row in display.device.out):
+            hangs.set()
+            answers.wait(10.0)
+        return 32.0 + 0.001 * next(reads)
 
     display.own, display.player.TEST_POLARITY = types.SimpleNamespace(measured_C=measured_C), False
     display.play(str(quick / "dip.csv"))
-    begun = time.monotonic()
-    while len(reads) <= 3:
-        assert time.monotonic() - begun < 2.0
-        time.sleep(0.01)
-    assert isinstance(display.device.out[-1], list)
+    assert hangs.wait(10.0), "the icon plays, and the sensor does not answer"
     escape = threading.Thread(target=display.abort)
     escape.start()
-    time.sleep(0.1)
-    assert display.device.out[-1] == 0.0
-    hangs.set()
+    begun = time.monotonic()
+    while display.device.out[-1] != 0.0:
+        assert time.monotonic() - begun < 1.0, "it waited for the thread before"
+        time.sleep(0.01)
+    answers.set()
     escape.join()
     with pytest.raises(RuntimeError):
         display.keep()
