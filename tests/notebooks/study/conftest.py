@@ -55,26 +55,14 @@ def make(folder: Path, text: str) -> Path:
     return out
 
 
-def _shim(path: Path) -> None:
-    text = path.read_text(encoding="utf-8")
-    if "def keep(" not in text:
-        text = text.replace("        self._block = ExitStack()\n", "")
-        text = text.replace("self._block", "NiLine._block")
-        text = text.replace("class NiLine:\n", "class NiLine:\n    _block = ExitStack()\n")
-        path.write_text(text + "\n\ndef keep():\n    pass\n", encoding="utf-8")
-
-
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the small study."""
-    out = make(tmp_path_factory.mktemp("quick"), QUICK)
-    _shim(out / "play_icons.py")
-    return out
+    return make(tmp_path_factory.mktemp("quick"), QUICK)
 
 
 def run_script(folder: Path, output: Path, *arguments: object) -> subprocess.CompletedProcess[str]:
     """Run the script of a study in a process of its own."""
-    _shim(folder / "play_icons.py")
     command = [sys.executable, folder / "run_study.py", "--output", output, *arguments]
     return subprocess.run(list(map(str, command)), capture_output=True, encoding="utf-8", timeout=120, check=False)
 
