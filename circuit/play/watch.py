@@ -10,7 +10,7 @@ from typing import NamedTuple
 SENSOR_LOWEST_C, SENSOR_HIGHEST_C = -20.0, 120.0  # a thermistor that is open or shorted reads far outside these
 FROZEN_STEPS = 3.0
 LATER_S = 0.5  # a sensor that is late by 0.3 s still moves so long after the other one has come to stay
-APART_K, APART_S = 1.0, 0.3  # two sensors of one display; healthy ones come to 0.98 K at an instant
+APART_K, APART_S = 1.0, 0.3  # two sensors of one display, of which one may be late by so much
 BESIDE_K, BESIDE_S = 1.5, 1.0  # a loop's display and its prediction; healthy ones come to 0.89 K for a second
 UNSUPERVISED_S = 1.0  # between two looks where no cut-off is quick enough
 COARSE_S = 0.016  # a tick of a coarse clock, by two of which no time is known better
@@ -70,7 +70,7 @@ class Watch:
     def forget(self) -> None:
         """Begin as before a first play."""
         self._since: dict[str, float] = {}
-        self._before: Mapping[str, float] = {}
+        self._recent: list[tuple[float, Mapping[str, float]]] = []
         self.expect()
 
     def expect(self, points: Sequence[tuple[float, float]] = (), begin_s: float = 0.0) -> None:
@@ -88,7 +88,6 @@ class Watch:
         self._check_apart(levels_C, now_s)
         self._check_beside(levels_C, asked_s, now_s)
         self._check_frozen(levels_C, now_s)
-        self._before = levels_C
 
     def _lasts(self, what: str, is_so: bool, now_s: float) -> float:
         """For how long something was so at every look, in s; -1 where it is not."""
@@ -117,16 +116,19 @@ class Watch:
             )
 
     def _check_apart(self, levels_C: Mapping[str, float], now_s: float) -> None:
-        """Two sensors of one display; each between its last two readings, since they are not read at one instant."""
-        spans = [sorted((now_C, self._before.get(name, now_C))) for name, now_C in levels_C.items()]
-        if len(spans) < 2:
+        """Two sensors of one display, by all their readings of a time, in which a late one comes after the other."""
+        self._recent.append((now_s, levels_C))
+        while len(self._recent) > 1 and self._recent[1][0] <= now_s - APART_S:
+            self._recent.pop(0)
+        if len(levels_C) < 2 or self._recent[0][0] > now_s - APART_S:
             return
-        apart_K = max(spans[0][0] - spans[1][1], spans[1][0] - spans[0][1])
-        if self._lasts("apart", apart_K > APART_K, now_s) > APART_S:
+        first, second = ([seen[name] for _, seen in self._recent if name in seen] for name in levels_C)
+        apart_K = max(min(first) - max(second), min(second) - max(first))
+        if apart_K > APART_K:
             first_C, second_C = levels_C.values()
             raise Stopped(
-                f"the sensors are {apart_K:.2f} K apart, at {first_C:.2f} and {second_C:.2f} degrees C, more than "
-                f"{APART_K:g} K: one of them is wrong or has come off"
+                f"the sensors are {apart_K:.2f} K apart for {APART_S:g} s, at {first_C:.2f} and {second_C:.2f} degrees "
+                f"C, more than {APART_K:g} K: one of them is wrong or has come off"
             )
 
     def _check_beside(self, levels_C: Mapping[str, float], asked_s: float, now_s: float) -> None:

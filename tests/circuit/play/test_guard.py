@@ -103,7 +103,7 @@ class TestSupervision:
         world.bench.reads_s = lambda: part * 0.1
         if passes:
             return world.play()
-        with pytest.raises(Refused, match=r"cut-off must act within 0\.1 s: read them in 0\.08 s, 12\.5 times a sec"):
+        with pytest.raises(Refused, match=r"guard must act within 0\.1 s: read them in 0\.08 s, 12\.5 times a sec"):
             world.play()
         assert not world.bench.out
         world.bench.reads_s = lambda: 0.01

@@ -152,7 +152,7 @@ while not any(isinstance(volts, list) for volts in daq.out):
 
 
 def test_an_interpreter_that_ends_in_mid_play_leaves_the_output_off_and_the_channel_free(tmp_path: Path) -> None:
-    from tests.circuit.delivery.formats.test_player_evidence import exported
+    from tests.circuit.delivery.formats.world import exported
 
     files, drive, _ = exported("ni-analogue-output")
     for name in (drive, "play_icons.py"):
@@ -165,7 +165,7 @@ def test_an_interpreter_that_ends_in_mid_play_leaves_the_output_off_and_the_chan
 
 
 def test_a_port_is_opened_for_one_program(monkeypatch: pytest.MonkeyPatch) -> None:
-    from tests.circuit.delivery.formats.test_player_evidence import exported
+    from tests.circuit.delivery.formats.world import exported
 
     files, _, _ = exported("qst-tcs2")
     monkeypatch.setitem(sys.modules, "serial", Ports())  # type: ignore[arg-type]
