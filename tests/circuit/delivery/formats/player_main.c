@@ -132,7 +132,7 @@ int main(void) {
     thermicon_icon icon = THERMICON_ICON(double_dip);
     char name[32];
     double value, coldest = 99, low = 99, high = -99, largest = 0, free_us = 0, begun_us = 0;
-    double rest_s = 1e9, pause_s = 1e9, began = -1, ended = -1, stopped = -1, wrong_s = 0, apart = 0;
+    double rest_s = 1e9, pause_s = 1e9, began = -1, ended = -1, stopped = -1, wrong_s = 0, moved = -1, bad_C = 0;
     int k, begun, first, plays = 0, was;
     if (scanf("%d %lf %lf %lf", &nodes, &alpha, &ohm, &gain) != 4 || nodes > MOST) broken("there is no plate");
     read_numbers(capacity, nodes), read_numbers(diagonal, nodes), read_numbers(beside, nodes - 1);
@@ -164,6 +164,7 @@ int main(void) {
         }
         was = player.state;
         thermicon_step(&player);
+        if (player.state == THERMICON_STOPPED && fabs(out) > 0) broken("the output is on after a stop");
         for (k = 0; k < 2; k++) { /* from the last turn that was off to the last one of the test */
             if (was == THERMICON_OFF) fell_K[k] = last_C[k];
             if (was == THERMICON_TESTING && player.state != THERMICON_TESTING) fell_K[k] -= last_C[k];
@@ -179,7 +180,8 @@ int main(void) {
         if (player.state == THERMICON_PLAYING && fabs(out) > largest) largest = fabs(out);
         if (x[DISPLAY] < low) low = x[DISPLAY];
         if (x[DISPLAY] > high) high = x[DISPLAY];
-        if (fabs(felt_C[0] - felt_C[1]) > apart) apart = fabs(felt_C[0] - felt_C[1]);
+        if (turn == of[BAD]) bad_C = x[DISPLAY];
+        if (turn > of[BAD] && moved < 0 && fabs(x[DISPLAY] - bad_C) > 0.4) moved = 1e-6 * true_us;
         if (thermicon_play(&player, icon) == THERMICON_OK) {
             double waited = 1e-6 * (true_us - (plays ? free_us : begun_us)), *least = plays ? &pause_s : &rest_s;
             if (waited < *least) *least = waited;
@@ -190,7 +192,7 @@ int main(void) {
     printf("begun %d first %d began %f ended %f plays %d ", begun, first, began, ended, plays);
     printf("waited %f paused %f stopped %f wrong %f ", rest_s, pause_s, stopped, wrong_s);
     printf("state %d fault %d out %f ", (int)player.state, (int)player.fault, out);
-    printf("coldest %f largest %f low %f high %f apart %f ", coldest, largest, low, high, apart);
+    printf("coldest %f largest %f low %f high %f moved %f ", coldest, largest, low, high, moved);
     printf("fell %f fell_second %f ", fell_K[0], fell_K[1]);
     printf("tested %f marks %d pin %d marked %f\n", 1e-6 * test_us, marks, pin, 1e-6 * mark_us);
     return 0;
