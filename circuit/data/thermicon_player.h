@@ -71,18 +71,19 @@
 #define THERMICON_SENSOR_LOW_C (-20.0f)
 #define THERMICON_SENSOR_HIGH_C 120.0f
 #endif
-/* A reading that stays for FROZEN_S after the other sensor has moved by three steps is frozen. Where there is no other
-   one, or it stays too, the display must be predicted to move so far. */
+/* A reading that has stayed for FROZEN_S, in which a late sensor catches up, is frozen if it stays for FROZEN_S more
+   after the other sensor has moved by three steps; or the prediction, where there is no other one or it stays too. */
 #ifndef THERMICON_SENSOR_STEP_K
 #define THERMICON_SENSOR_STEP_K 0.1f
 #endif
 #ifndef THERMICON_FROZEN_S
 #define THERMICON_FROZEN_S 1.0f
 #endif
-/* Sensors of one display are no farther apart for longer, if the second one lags by 0.3 s at most. */
+/* Sensors of one display are no farther apart for longer; the second one may read what the first did LAG_S before. */
 #define THERMICON_APART_K 1.0f
 #define THERMICON_APART_S 0.3f
-/* The display of a loop is no farther from its predicted course for longer. */
+#define THERMICON_LAG_S 0.3f
+/* What a loop's own sensor reads in a play is no farther from the predicted course for longer. */
 #define THERMICON_OFF_COURSE_K 1.5f
 #define THERMICON_OFF_COURSE_S 1.0f
 /* A clock that reads the same in so many steps stands still. */
@@ -100,29 +101,15 @@ typedef enum { THERMICON_TESTING, THERMICON_RESTING, THERMICON_PLAYING, THERMICO
     thermicon_state;
 
 typedef enum {
-    THERMICON_NO_FAULT,
-    THERMICON_ABORTED,
-    THERMICON_HOST_SILENT,
-    THERMICON_LOOP_LATE,
-    THERMICON_SENSOR_LOST,
-    THERMICON_SENSOR_FROZEN,
-    THERMICON_TOO_COLD,
-    THERMICON_TOO_WARM,
-    THERMICON_POLARITY_SWAPPED,
-    THERMICON_CLOCK_STANDS,
-    THERMICON_SENSORS_APART,
-    THERMICON_OFF_COURSE,
+    THERMICON_NO_FAULT, THERMICON_ABORTED, THERMICON_HOST_SILENT, THERMICON_LOOP_LATE,
+    THERMICON_SENSOR_LOST, THERMICON_SENSOR_FROZEN, THERMICON_TOO_COLD, THERMICON_TOO_WARM,
+    THERMICON_POLARITY_SWAPPED, THERMICON_CLOCK_STANDS, THERMICON_SENSORS_APART, THERMICON_OFF_COURSE,
     THERMICON_HELD_TOO_LONG
 } thermicon_fault;
 
 typedef enum {
-    THERMICON_OK,
-    THERMICON_NO_SENSOR,
-    THERMICON_NOT_RESTED,
-    THERMICON_TOO_SOON,
-    THERMICON_BUSY,
-    THERMICON_HAS_STOPPED,
-    THERMICON_NO_CLOCK
+    THERMICON_OK, THERMICON_NO_SENSOR, THERMICON_NOT_RESTED, THERMICON_TOO_SOON, THERMICON_BUSY,
+    THERMICON_HAS_STOPPED, THERMICON_NO_CLOCK
 } thermicon_answer;
 
 typedef struct {
@@ -153,9 +140,8 @@ typedef struct {
 } thermicon_board;
 
 typedef struct {
-    float reading_C, test_from_C, other_C, expected_C; /* the last two: as the reading began to stay */
-    uint64_t still_us, beyond_us, beside_us;
-    uint8_t stays;
+    float reading_C, test_from_C, other_C, expected_C; /* the last two: when the reading had stayed for FROZEN_S */
+    uint64_t stays_us, frozen_us, beyond_us;
 } thermicon_sensor;
 
 typedef struct {
@@ -164,10 +150,10 @@ typedef struct {
     thermicon_state state;
     thermicon_fault fault;
     uint64_t now_us, entered_us, fed_us; /* since thermicon_begin(), from 1 on, without wraps */
-    uint64_t apart_us;
+    uint64_t apart_us, beside_us;
     uint32_t clock_us, place;
     uint16_t stands;
-    float before_C, goal, integral;
+    float before_C, late_C, goal, integral; /* late_C: the first sensor's, THERMICON_LAG_S late */
     thermicon_sensor first, second;
     uint8_t has_stepped, has_played, marked;
 } thermicon_player;
@@ -191,8 +177,7 @@ static inline thermicon_icon thermicon_icon_of(const int16_t *wave, uint32_t cou
 static inline void thermicon_enter(thermicon_player *player, thermicon_state state) {
     player->state = state;
     player->entered_us = player->now_us;
-    player->before_C = player->first.reading_C;
-    player->first.stays = player->second.stays = 0;
+    player->before_C = player->late_C = player->first.reading_C;
 }
 
 static inline void thermicon_mark(thermicon_player *player, uint8_t on) {
@@ -251,10 +236,10 @@ static inline thermicon_answer thermicon_play(thermicon_player *player, thermico
     return THERMICON_OK;
 }
 
-/* The predicted display in degrees C: the course of the icon. */
+/* The predicted display in degrees C: the course of the icon, and in a rest where it begins. */
 static inline float thermicon_expected(const thermicon_player *player) {
     const thermicon_icon *icon = &player->icon;
-    uint64_t played_us = player->now_us - player->entered_us;
+    uint64_t played_us = player->state == THERMICON_PLAYING ? player->now_us - player->entered_us : 0;
     uint32_t place = (uint32_t)(played_us / (1000UL * THERMICON_COURSE_MS));
     float part = (float)(played_us % (1000UL * THERMICON_COURSE_MS)) / (1000.0f * THERMICON_COURSE_MS), from;
     if (place + 1 >= icon->course_count) return 0.01f * (float)THERMICON_CODE(icon->course, icon->course_count - 1);
@@ -273,22 +258,18 @@ static inline int thermicon_exceeds(float difference, float most) { return diffe
 
 /* Checks what a sensor reads, and stops over it. A sensor that a board does not have reads 0 and stays. */
 static inline void thermicon_check(thermicon_player *player, thermicon_sensor *sensor, const thermicon_sensor *other) {
-    int is_playing = player->state == THERMICON_PLAYING, is_on = player->state != THERMICON_OFF;
-    float now = sensor->reading_C, expected = is_playing ? thermicon_expected(player) : 0.0f, moved;
-    int is_beyond = now < THERMICON_HELD_LOW_C || now > THERMICON_HELD_HIGH_C;
-    int is_beside = THERMICON_CLOSED_LOOP && is_playing && thermicon_exceeds(now - expected, THERMICON_OFF_COURSE_K);
+    float now = sensor->reading_C, expected = thermicon_expected(player), moved;
+    int is_held = player->state != THERMICON_OFF && (now < THERMICON_HELD_LOW_C || now > THERMICON_HELD_HIGH_C);
     if (now < THERMICON_LOW_C) thermicon_stop(player, THERMICON_TOO_COLD);
     if (now > THERMICON_HIGH_C) thermicon_stop(player, THERMICON_TOO_WARM);
-    thermicon_limit(player, is_on && is_beyond, &sensor->beyond_us, THERMICON_HELD_S, THERMICON_HELD_TOO_LONG);
-    thermicon_limit(player, is_beside, &sensor->beside_us, THERMICON_OFF_COURSE_S, THERMICON_OFF_COURSE);
-    if (!sensor->stays) {
-        sensor->stays = 1;
+    thermicon_limit(player, is_held, &sensor->beyond_us, THERMICON_HELD_S, THERMICON_HELD_TOO_LONG);
+    if (player->now_us - sensor->stays_us <= thermicon_us(THERMICON_FROZEN_S)) {
         sensor->other_C = other->reading_C;
         sensor->expected_C = expected;
     }
     moved = other->reading_C - sensor->other_C;
     if (!thermicon_exceeds(moved, 0.0f)) moved = expected - sensor->expected_C;
-    thermicon_limit(player, thermicon_exceeds(moved, 3.0f * THERMICON_SENSOR_STEP_K), &sensor->still_us,
+    thermicon_limit(player, thermicon_exceeds(moved, 3.0f * THERMICON_SENSOR_STEP_K), &sensor->frozen_us,
                     THERMICON_FROZEN_S, THERMICON_SENSOR_FROZEN);
 }
 
@@ -298,20 +279,32 @@ static inline void thermicon_read(thermicon_player *player, thermicon_sensor *se
     int has_read = measure(player->board->context, &now);
     if (!has_read || !(now > THERMICON_SENSOR_LOW_C && now < THERMICON_SENSOR_HIGH_C)) /* not a number fails too */
         thermicon_stop(player, THERMICON_SENSOR_LOST);
-    if (now < sensor->reading_C || now > sensor->reading_C) sensor->stays = 0;
+    if (now < sensor->reading_C || now > sensor->reading_C) sensor->stays_us = player->now_us;
     sensor->reading_C = now;
 }
 
-static inline void thermicon_look(thermicon_player *player) {
+/* A second sensor that is late reads between the first one and `late_C`, which follows it. */
+static inline int thermicon_are_apart(const thermicon_player *player) {
+    float first = player->first.reading_C, late = player->late_C, second = player->second.reading_C;
+    float lowest = first < late ? first : late, highest = first < late ? late : first;
+    return second < lowest - THERMICON_APART_K || second > highest + THERMICON_APART_K;
+}
+
+static inline void thermicon_look(thermicon_player *player, float elapsed_s) {
     thermicon_sensor *first = &player->first, *second = &player->second;
     int has_first = player->board->measure != NULL, has_second = player->board->measure_second != NULL, is_apart;
+    float beside_K;
     if (has_first) thermicon_read(player, first, player->board->measure);
     if (has_second) thermicon_read(player, second, player->board->measure_second);
     if (player->state == THERMICON_STOPPED) return;
     if (has_first) thermicon_check(player, first, second);
     if (has_second) thermicon_check(player, second, first);
-    is_apart = has_first && has_second && thermicon_exceeds(first->reading_C - second->reading_C, THERMICON_APART_K);
+    player->late_C += (first->reading_C - player->late_C) * elapsed_s / (THERMICON_LAG_S + elapsed_s);
+    is_apart = has_first && has_second && thermicon_are_apart(player);
     thermicon_limit(player, is_apart, &player->apart_us, THERMICON_APART_S, THERMICON_SENSORS_APART);
+    beside_K = player->state == THERMICON_PLAYING ? first->reading_C - thermicon_expected(player) : 0.0f;
+    thermicon_limit(player, THERMICON_CLOSED_LOOP && thermicon_exceeds(beside_K, THERMICON_OFF_COURSE_K),
+                    &player->beside_us, THERMICON_OFF_COURSE_S, THERMICON_OFF_COURSE);
 }
 
 /* The loop: too warm asks for current that cools. The integral stops where the output is at its limit. */
@@ -367,17 +360,16 @@ static inline void thermicon_go_on(thermicon_player *player) {
 static inline thermicon_state thermicon_step(thermicon_player *player) {
     const thermicon_board *board = player->board;
     uint32_t elapsed, place;
-    uint64_t silent_us;
     float out;
     if (player->state == THERMICON_STOPPED) {
         board->put_out(board->context, 0.0f);
         return player->state;
     }
     elapsed = thermicon_elapsed(player);
-    silent_us = player->now_us - player->fed_us;
-    if (silent_us > thermicon_us(THERMICON_WATCHDOG_S) || silent_us > thermicon_us(THERMICON_JUDGED_WATCHDOG_S))
+    if (player->now_us - player->fed_us > thermicon_us(THERMICON_WATCHDOG_S) ||
+        player->now_us - player->fed_us > thermicon_us(THERMICON_JUDGED_WATCHDOG_S))
         thermicon_stop(player, THERMICON_HOST_SILENT);
-    if (player->state != THERMICON_STOPPED) thermicon_look(player);
+    if (player->state != THERMICON_STOPPED) thermicon_look(player, 1e-6f * (float)elapsed);
     if (player->state == THERMICON_STOPPED) return player->state;
     if (player->has_stepped && !elapsed) return player->state; /* a coarse clock: what is put out goes on */
     player->has_stepped = 1;

@@ -180,7 +180,7 @@ int main(void) {
         if (player.state == THERMICON_PLAYING && fabs(out) > largest) largest = fabs(out);
         if (x[DISPLAY] < low) low = x[DISPLAY];
         if (x[DISPLAY] > high) high = x[DISPLAY];
-        if (turn == of[BAD]) bad_C = x[DISPLAY];
+        if (turn <= of[BAD] + 1e6 / of[DT]) bad_C = x[DISPLAY]; /* a second later, when a late sensor has caught up */
         if (turn > of[BAD] && moved < 0 && fabs(x[DISPLAY] - bad_C) > 0.4) moved = 1e-6 * true_us;
         if (thermicon_play(&player, icon) == THERMICON_OK) {
             double waited = 1e-6 * (true_us - (plays ? free_us : begun_us)), *least = plays ? &pause_s : &rest_s;
