@@ -28,9 +28,9 @@ from ..safety.gate import Gate, gate_shown
 from ..safety.held import LASTING_S, SENSOR_K, HeldSkin, Span, Stages, around_C, one_stage, two_stages
 from ..safety.plant import recovery_s
 from ..safety.polarity import least_fall_K, polarity_check, where_tests_begin
-from ..safety.shown import Stay
+from ..safety.shown import Stay, healthy_C
 from ..safety.tally import worst_of_lanes
-from ..safety.ways_out import with_ways_out
+from ..safety.ways_out import with_ways_out_of_set_points
 from ..solver.batch_inputs import Bank, run_regulate
 from ..solver.kernel_regulate import DELAY_S, KD, KI, KP, LAG_S
 from ..solver.network import ALPHA, COLD_J_PER_K, HIGHEST_A, LOWEST_A, RESISTANCE
@@ -70,7 +70,7 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
     may = FaultLimits.of(rig.limits, max(_dose_min(verdict) for verdict in verdicts))
     skin = HeldSkin.of(rig, may)
     lasting = skin.lasting_C()
-    inside = lasting[0] + SENSOR_K, lasting[1] - SENSOR_K
+    inside = healthy_C(lasting)
     weakest = loops.within(narrowed_A(limits_A, used_A))
     healthy_s = max(
         *(_beyond_s(course, inside) for pair in courses for course in pair),
@@ -83,7 +83,7 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
     if beyond:
         shown_C = ends_of_traces(deliveries)
         contact = HeldSkin(skin.modes[:1], may).brief_C(lasting, stages.brief_s or LASTING_S)
-        beyond = with_ways_out(beyond, shown_C, for_good_C(skin.modes, rig.limits), contact, open_loop=False)
+        beyond = with_ways_out_of_set_points(beyond, shown_C, for_good_C(skin.modes, rig.limits), contact)
     failed = tuple(check for check in (*swings, *beyond, *stuck, *swung) if not check.passed)
     polarity, lost = _wiring(module, rig, plays, cut)
     proven = Demands(
@@ -141,7 +141,8 @@ def ends_of_traces(deliveries: Sequence[DeliveredDrive]) -> Span:
 def _beyond_s(course: DisplayCourse, inside_C: Span) -> float:
     """For how long in s a play is beyond temperatures without a break."""
     stay = Stay(inside_C)
-    stay.add(course.step_s * np.arange(len(course.display_C)), course.display_C[np.newaxis])
+    times_s: Array = course.step_s * np.arange(len(course.display_C), dtype=np.float64)
+    stay.add(times_s, course.display_C[np.newaxis])
     return stay.beyond_s
 
 
@@ -154,7 +155,7 @@ def _from_no_power_s(loops: AnyLoop, bank: Bank, play: Samples, inside_C: Span) 
     gains = np.zeros((len(ensemble.corners), 5))
     gains[:, [KP, KI, KD]] = np.outer(ensemble.gain, weakest)
     gains[:, LAG_S] = own.lag_s
-    times_s = period * np.arange(round(TAKEN_OVER_S / period))
+    times_s: Array = period * np.arange(round(TAKEN_OVER_S / period), dtype=np.float64)
     goals = np.full((1, len(times_s)), float(play.command[0]))
     lanes, begun = ensemble.lanes, ensemble.at_rest(0.0).nodes_C
     none = np.zeros_like(lanes)

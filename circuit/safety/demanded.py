@@ -25,17 +25,17 @@ from .display import for_good_C
 from .ensemble import Ensemble
 from .exposure import cem43_min
 from .fault_limits import DOSE, FaultLimits
-from .held import BEYONDS_K, HeldSkin, Stages, one_stage, two_stages
+from .held import BEYONDS_K, HeldSkin, Span, Stages, one_stage, two_stages
 from .in_plays import InPlays, found_at_rest, found_in_plays
 from .plant import Single
 from .polarity import least_fall_K, polarity_check, where_tests_begin
 from .repeated import LONGEST_PAUSE_S, PAUSE_STEP_S, PRACTICAL_S, Repeating, lengthened_s
-from .shown import Shown, Span, healthy_C, longest_rest_s, shown_between
+from .shown import Shown, healthy_C, longest_rest_s, shown_between
 from .single_faults import Faulty
 from .starts import Beginning, Starts
 from .stuck_rate import Limited, limited
 from .tally import HOTTEST_C, WATCHED, Tally
-from .ways_out import with_ways_out
+from .ways_out import with_ways_out_of_drives
 
 Found = tuple[Demands, tuple[Check, ...]]
 """What the hardware must prevent, and checks that fail where it cannot."""
@@ -195,12 +195,10 @@ class Search:
 
     def completed(self, in_plays: Sequence[InPlays], pause_s: float, said_s: float | None) -> list[Found]:
         """The whole demands on each drive, and what fails; `said_s` is the pause where one is safe."""
-        stages, failed = self.stages(pause_s), ()
+        stages, failed = self.stages(pause_s), tuple[Check, ...]()
         if stages.failed and said_s is not None:
-            modes = self.skin.modes
-            failed = with_ways_out(
-                stages.failed, self._as_given_C(), for_good_C(modes, self.limits), stages.ends_C, open_loop=True
-            )
+            thermode_C = for_good_C(self.skin.modes, self.limits)
+            failed = with_ways_out_of_drives(stages.failed, self._as_given_C(), thermode_C)
         rest_s = None if said_s is None else self.beginning.kept_s(self.starts(pause_s), pause_s)
         resting = found_at_rest(self.faulty(pause_s)[0], stages.ends_C)
         found = []

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .demands import CutOff, SingleFault
+from .held import Span
 from .polarity import TEST_S, testing_A
-from .shown import Span
 from .single_faults import STUCK_SHARES, Faulty
 
 

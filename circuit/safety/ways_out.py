@@ -12,30 +12,45 @@ BY_A_LOOP_K = 0.5
 """So far beside its set-points a controller's display is judged: what remains of a rig that is hardly known."""
 
 
-def with_ways_out(
-    failed: Sequence[Check], shown_C: Span, thermode_C: Span, known_C: Span, *, open_loop: bool
-) -> tuple[Check, ...]:
-    """Failed checks of `stays`, each with what would pass.
+def with_ways_out_of_drives(failed: Sequence[Check], shown_C: Span, thermode_C: Span) -> tuple[Check, ...]:
+    """Failed checks of currents that nothing corrects, each with what would pass.
 
-    `shown_C` is the display of the rig as given, `thermode_C` where a thermode may stay, and `known_C` where the
-    display of a rig that was measured may go.
+    `shown_C` is the display of the rig as given, `thermode_C` where a thermode may stay, in °C.
     """
-    return tuple(
-        replace(check, source=f"{STAYS}: {_ways(check, shown_C, thermode_C, known_C, open_loop)}") for check in failed
-    )
+    told = []
+    for check in failed:
+        ways, within_K = _by_thermode(check, shown_C, thermode_C), _inside_K(check, check.limit, shown_C)
+        if within_K >= BY_A_LOOP_K:
+            ways.insert(0, "play set-points by a controller (closed-loop-controller)")
+        if within_K >= 0.0:
+            farther_K = abs(check.value - shown_C[int(check.upper)])
+            ways.append(f"measure what [uncertainty] states, which takes the display {farther_K:.1f} K farther")
+        told.append(_told(check, ways))
+    return tuple(told)
 
 
-def _ways(check: Check, shown_C: Span, thermode_C: Span, known_C: Span, open_loop: bool) -> str:
-    end, side = int(check.upper), 1.0 if check.upper else -1.0
-    within_K = side * (check.limit - shown_C[end])
-    ways = []
-    if open_loop and within_K >= BY_A_LOOP_K:
-        ways.append("play set-points by a controller (closed-loop-controller)")
-    if side * (thermode_C[end] - shown_C[end]) >= LEAST_BEYOND_K:
-        ways.append("use a thermode (qst-tcs2)")
-    if open_loop and within_K >= 0.0:
-        farther_K = side * (check.value - shown_C[end])
-        ways.append(f"measure what [uncertainty] states, which takes the display {farther_K:.1f} K farther")
-    elif not open_loop and side * (known_C[end] - check.value) >= LEAST_BEYOND_K:
-        ways.append("measure the contact, of which uncertainty.contact_resistance_relative states too little")
-    return ", or ".join(ways) or "use a smaller or shorter change"
+def with_ways_out_of_set_points(
+    failed: Sequence[Check], shown_C: Span, thermode_C: Span, known_C: Span
+) -> tuple[Check, ...]:
+    """Failed checks of set-points, likewise; `known_C` is where a display may go whose contact was measured."""
+    told = []
+    for check in failed:
+        ways = _by_thermode(check, shown_C, thermode_C)
+        if _inside_K(check, known_C[int(check.upper)], (check.value, check.value)) >= LEAST_BEYOND_K:
+            ways.append("measure the contact, and state uncertainty.contact_resistance_relative")
+        told.append(_told(check, ways))
+    return tuple(told)
+
+
+def _inside_K(check: Check, limit_C: float, shown_C: Span) -> float:
+    """How far a display stays inside a limit on the side of a check."""
+    return limit_C - shown_C[1] if check.upper else shown_C[0] - limit_C
+
+
+def _by_thermode(check: Check, shown_C: Span, thermode_C: Span) -> list[str]:
+    inside_K = _inside_K(check, thermode_C[int(check.upper)], shown_C)
+    return ["use a thermode (qst-tcs2)"] if inside_K >= LEAST_BEYOND_K else []
+
+
+def _told(check: Check, ways: Sequence[str]) -> Check:
+    return replace(check, source=f"{STAYS}: {', or '.join(ways) or 'use a smaller or shorter change'}")
