@@ -132,6 +132,7 @@ def sidecar(
         "format": {
             **{"name": form.name, "source": form.source, "how_to_play": form.how},
             **(form.facts(delivery) if form.facts else {}),
+            "demands_met": form.met(cue.verdict.demands),
         },
         "file": form.file_name(delivery),
         "drive_sha256": digest(drive),

@@ -213,4 +213,9 @@ FORMAT = Format(
     stem=identifier,
     player=player_files,
     set_files=(PLAYER,),
+    holds=(
+        *("watchdog_s", "cut_off_display_C", "held_cut_off_display_C", "rest_before_first_play_s"),
+        *("pause_at_least_s", "current_limit_A", "loop"),
+    ),
+    proves=("polarity_check",),
 )

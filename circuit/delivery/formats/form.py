@@ -12,7 +12,7 @@ from thermicon.icons.model.corners import Corners
 
 from ...arrays import Array
 from ...inputs import InputError
-from ...safety.demands import Demands
+from ...safety.demands import Demands, How
 from ...solver.inverse import baseline_C
 from ...solver.steady import steady_state
 from ..delivered_drive import DeliveredDrive
@@ -83,8 +83,9 @@ class Format:
     `device` is used where none is named; `stem` makes the file's name from the icon's, `suffix_by` the suffix where it
     depends on the device; `how` explains how to play it. `write` gives the bytes of one drive, `columns` what is in
     them, `facts` further facts for the sidecar. `player` gives the files of the whole set, named in
-    `set_files`, from all its drives and what the hardware must prevent. `needs` is the package that writes it, `fits`
-    raises FormatError for a device that it has no use for.
+    `set_files`, from all its drives and what the hardware must prevent; it `holds` some of these demands while it plays
+    and `proves` others before it does. `needs` is the package that writes it, `fits` raises FormatError for a device
+    that it has no use for.
     """
 
     name: str
@@ -101,6 +102,8 @@ class Format:
     facts: Callable[[DeliveredDrive], dict[str, object]] | None = None
     player: Callable[[Sequence[Played], Demands], dict[str, bytes]] | None = None
     set_files: tuple[str, ...] = ()
+    holds: tuple[str, ...] = ()
+    proves: tuple[str, ...] = ()
     needs: str = ""
     fits: Callable[[Device], None] | None = None
 
@@ -111,6 +114,15 @@ class Format:
         """Name of the file of a drive."""
         suffix = self.suffix if self.suffix_by is None else self.suffix_by(delivery)
         return check_name(self.stem(delivery.icon.name) + suffix)
+
+    def met(self, demands: Demands) -> dict[str, How]:
+        """How each demand is met: by the player of this format, else by a person, who has to state it."""
+        how: dict[str, How] = {}
+        for name in demands.demanded:
+            how[name] = "held" if name in self.holds else "proven" if name in self.proves else "stated"
+        if demands.loop is None and "current_limit_A" in how:
+            how["current_limit_A"] = "stated"  # of the driver itself, which no player reaches
+        return how
 
     def check(self, device: Device) -> None:
         """Raise FormatError where a device does not play what this format holds, or its package is not installed."""

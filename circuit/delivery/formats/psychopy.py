@@ -165,5 +165,8 @@ FORMAT = Format(
     suffix_by=lambda delivery: _drive(delivery).suffix,
     player=set_files,
     set_files=SET_FILES,
+    # A script on a computer that hangs holds no cut-off: it watches, and the hardware has its own.
+    holds=("rest_before_first_play_s", "pause_at_least_s"),
+    proves=("polarity_check",),
     fits=fits,
 )

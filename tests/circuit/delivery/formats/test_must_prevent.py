@@ -1,6 +1,7 @@
 """Numbers of the gate as players get them: the strictest of a set, rounded to the safe side."""
 
 import ast
+import json
 import re
 from dataclasses import replace
 from functools import cache
@@ -12,11 +13,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.circuit.delivery.one_drive import prepare
-from tests.circuit.verdicts import MADE_UP, POLARITY, GreenVerdict
+from tests.circuit.verdicts import LOOP, MADE_UP, POLARITY, GreenVerdict
 from thermicon.circuit import Device, Rig
-from thermicon.circuit.delivery.formats import load_format
+from thermicon.circuit.delivery.formats import Format, format_names, load_format
 from thermicon.circuit.delivery.formats.form import Played
-from thermicon.circuit.safety.demands import CutOff, Demands, HeldCutOff, Loop, PolarityCheck
+from thermicon.circuit.delivery.pack import pack, sidecar_name
+from thermicon.circuit.delivery.prepare import Prepared
+from thermicon.circuit.safety.demands import DEMANDS, CutOff, Demands, HeldCutOff, Loop, PolarityCheck
 from thermicon.icons import load_library
 
 RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})
@@ -123,3 +126,48 @@ def _values(node: ast.expr) -> list[Any]:
     except ValueError:
         return []
     return list(value) if isinstance(value, tuple) else [value]
+
+
+EVERY = replace(
+    MADE_UP, zero_current_at_most_s=700.0, held_cut_off_display_C=HeldCutOff(25.0, 38.0, 9.0),
+    current_limit_A=(-1.2, 1.2), loop=LOOP,
+)  # fmt: skip
+"""Everything that may be demanded."""
+OTHER = replace(
+    EVERY, watchdog_s=0.3, cut_off_display_C=CutOff(21.0, 39.0, 0.05), rest_before_first_play_s=40.0,
+    held_cut_off_display_C=HeldCutOff(24.0, 37.0, 8.0), polarity_check=replace(POLARITY, test_s=0.7),
+    pause_at_least_s=30.0, zero_current_at_most_s=600.0, current_limit_A=(-1.1, 1.1),
+    loop=replace(LOOP, playing_kp_A_per_K=(0.17, 0.19)),
+)  # fmt: skip
+
+
+def sent(form: Format) -> Prepared:
+    device = Device.load("closed-loop-controller" if form.name == "psychopy" else form.device)
+    return prepare(ICON, Rig.load("tcs2") if form.name == "tcs2-serial" else RIG, device, form, gate=GreenVerdict)
+
+
+@pytest.mark.parametrize("form", [load_format(name) for name in format_names()], ids=format_names())
+def test_every_demand_is_met_and_what_a_player_holds_or_proves_changes_the_player(form: Format) -> None:
+    """So that none is dropped: what nothing holds or proves is stated, and the sidecar has all of them."""
+    met, ready = form.met(EVERY), sent(form)
+    assert set(met) == set(DEMANDS) == set(EVERY.demanded)
+    assert set(met.values()) <= {"held", "proven", "stated"}
+    assert form.player is not None or set(met.values()) == {"stated"}
+    verdict = type("Verdict", (GreenVerdict,), {"demands": EVERY, "demanded": EVERY.to_dict()})(None)
+    about = json.loads(pack([replace(ready, verdict=verdict)], form)[sidecar_name(ICON.name, form)])
+    assert about["format"]["demands_met"] == met
+    assert all(about["hardware_must_prevent"][name] is not None for name in met)
+    for name, how in met.items():
+        if how != "stated":
+            changed = replace(EVERY, **{name: getattr(OTHER, name)})
+            assert form.player([Played(ready.delivery, "a", "a.json")], changed) != form.player(
+                [Played(ready.delivery, "a", "a.json")], EVERY
+            ), name
+
+
+def test_the_limit_of_a_driver_is_stated_where_no_loop_keeps_it() -> None:
+    form = load_format("c-array")
+    assert form.met(EVERY)["current_limit_A"] == "held"
+    assert form.met(replace(EVERY, loop=None))["current_limit_A"] == "stated"
+    assert "polarity_check" not in form.met(replace(EVERY, polarity_check=replace(POLARITY, needed=False)))
+    assert "held_cut_off_display_C" not in form.met(MADE_UP)
