@@ -105,6 +105,7 @@ class Search:
     hardest: Sequence[list[int]] = ()
     _starts: dict[float, Starts[State]] = field(default_factory=dict)
     _shown: dict[float, Shown] = field(default_factory=dict)
+    _rests: dict[float, float | None] = field(default_factory=dict)
 
     @property
     def limits(self) -> Limits:
@@ -121,6 +122,12 @@ class Search:
         """Drives whose plays begin between the bounds of a pause."""
         bounds = self.starts(pause_s).bounds
         return [replace(one, bounds=bounds) for one in self.faults]
+
+    def rest_s(self, pause_s: float) -> float | None:
+        """The rest before a first play, after which no play passes a limit; None: 10 min do not suffice."""
+        if pause_s not in self._rests:
+            self._rests[pause_s] = self.beginning.kept_s(self.starts(pause_s), pause_s)
+        return self._rests[pause_s]
 
     def shown(self, pause_s: float) -> Shown:
         """What the display reaches without a fault, and for how long in s it is beyond where it may stay."""
@@ -188,10 +195,13 @@ class Search:
             shortest_s, longest_s, lambda longer_s: all(map(self.suffices, numbers, repeat(longer_s), needed))
         )
         added_s = max(PAUSE_STEP_S, 0.02 * pause_s)
-        while (in_plays := self.in_plays(pause_s, needed if pause_s < longest_s else None)) is None:
+        while pause_s < longest_s:
+            in_plays = self.in_plays(pause_s, needed)
+            if in_plays is not None and self.rest_s(pause_s) is not None:
+                return pause_s, in_plays
             longer_s = math.ceil((pause_s + added_s) / PAUSE_STEP_S) * PAUSE_STEP_S
             pause_s, added_s = min(longest_s, longer_s), 2.0 * added_s
-        return pause_s, in_plays
+        return pause_s, self.in_plays(pause_s) or []
 
     def completed(self, in_plays: Sequence[InPlays], pause_s: float, said_s: float | None) -> list[Found]:
         """The whole demands on each drive, and what fails; `said_s` is the pause where one is safe."""
@@ -199,7 +209,7 @@ class Search:
         if stages.failed and said_s is not None:
             thermode_C = for_good_C(self.skin.modes, self.limits)
             failed = with_ways_out_of_drives(stages.failed, self._as_given_C(), thermode_C)
-        rest_s = None if said_s is None else self.beginning.kept_s(self.starts(pause_s), pause_s)
+        rest_s = None if said_s is None else self.rest_s(pause_s)
         resting = found_at_rest(self.faulty(pause_s)[0], stages.ends_C)
         found = []
         for number, one in enumerate(in_plays):

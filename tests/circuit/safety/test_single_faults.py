@@ -13,18 +13,16 @@ from thermicon.circuit import Drive, Limits, Rig, gate
 from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.demanded import zero_current_s
 from thermicon.circuit.safety.demands import CutOff, SingleFault
-from thermicon.circuit.safety.display import DisplayPlant
 from thermicon.circuit.safety.ensemble import Ensemble, between
 from thermicon.circuit.safety.exposure import cem43_min
 from thermicon.circuit.safety.fault_limits import FaultLimits
 from thermicon.circuit.safety.gate import Gate, gate_set
-from thermicon.circuit.safety.held import SENSOR_K, HeldSkin, around_C, one_stage, two_stages
-from thermicon.circuit.safety.polarity import TEST_A, TEST_S, least_fall_K, polarity_check, where_tests_begin
+from thermicon.circuit.safety.held import HeldSkin, around_C
+from thermicon.circuit.safety.polarity import TEST_A, TEST_S
 from thermicon.circuit.safety.repeated import Repeating
 from thermicon.circuit.safety.shown import healthy_C, longest_rest_s, shown_between
 from thermicon.circuit.safety.single_faults import Faulty, Moments
 from thermicon.circuit.safety.starts import Beginning, Starts
-from thermicon.circuit.safety.stuck_rate import limited
 from thermicon.circuit.safety.tally import WATCHED, Tally
 from thermicon.circuit.solver.batch_inputs import State
 
@@ -105,46 +103,6 @@ def test_where_no_cut_off_is_quick_enough_a_current_limit_is_told_for_which_one_
 def test_limits_of_the_display_bound_the_cut_off() -> None:
     assert around_C(LIMITS, (5.5, 44.8)) == (5.0, 45.0)
     assert around_C(LIMITS, (24.43, 36.77)) == (23.5, 37.7), "rounded inwards"
-
-
-def fall_K(one: Faulty) -> float:
-    return least_fall_K(one.ensemble, where_tests_begin(one.ensemble, [one.start], [one.moments()]))
-
-
-def test_swapped_poles_are_found_by_a_small_current() -> None:
-    check, fault = polarity_check(faulty(), fall_K(faulty()))
-    assert check.needed
-    assert check.swapped_skin_C[1] > 42.0, "what cools heats"
-    assert fault.colour == "red"
-    check, fault = polarity_check(faulty(Drive([0, 1], [0.0, 0.0])), 0.3)
-    assert not check.needed and fault.colour in ("green", "amber"), "a gentle cue needs none"
-
-
-def test_right_wires_pass_the_test_from_every_start_in_every_corner_and_swapped_ones_never() -> None:
-    """Of a module that is hardly known. Without the seconds off before it the same test would refuse right wires."""
-    unsure = {"plates_relative": 0.6, "conductance_relative": 0.4, "gain_relative": 0.3}
-    every = Ensemble.of(Rig.load("shani2021").with_(**{f"uncertainty.{key}": share for key, share in unsure.items()}))
-    one = Faulty(every, COOL, REST, every.at_rest(REST), LIMITS, MAY)
-    check, _ = polarity_check(one, fall_K(one))
-    display, at_once, falls = WATCHED.index("display_C"), [], []
-    begun = [every.at_rest(0.0), one.start]
-    begun += [every.end_of(between(COOL, 0.0, instant), one.start) for instant in (0.3, 0.6, 2.9, 3.5)]
-    for state in begun:
-        for off_s in (0.0, check.off_before_s, 60.0):
-            off = state if off_s == 0.0 else every.rest(0.0, state, off_s)
-            right, wrong = (
-                every.hold(current_A, off, np.array([0.0, check.test_s]))[0][display]
-                for current_A in (check.test_current_A, -check.test_current_A)
-            )
-            if off_s == 0.0:
-                at_once.append((right[:, 0] - right[:, 1]).min())
-                continue
-            falls.append(right[:, 0] - right[:, 1])
-            assert (wrong[:, 0] - wrong[:, 1] < 0.0).all()
-    assert len(falls[0]) == 65
-    assert np.max(falls) > 3.0 * np.min(falls), "one corner is not like another"
-    assert np.min(falls) > 1.5 * check.display_change_at_least_K > 0.2, "with room for a sensor that lags"
-    assert min(at_once) < check.display_change_at_least_K, "the seconds off are needed"
 
 
 WARM = Drive([0, 1.0, 4.0, 5.0], [REST, -0.22, -0.22, REST])
@@ -241,69 +199,6 @@ def test_the_cut_off_lets_a_second_play_after_no_power_pass_in_every_corner() ->
             shown, state = values[WATCHED.index("display_C")], then
             assert shown.max() < cut.high and shown.min() > cut.low
         state = every.rest(REST, state, pause_s)
-
-
-def shown_under(plant: DisplayPlant, level_C: float, before_C: float, times_s: np.ndarray) -> tuple[float, float]:
-    """Warmest skin and largest dose in all corners under a display that is held, where skin was steady before."""
-    skin = plant.held(level_C, plant.steady(before_C), times_s)[WATCHED.index("skin_C")]
-    return float(skin.max()), float(cem43_min(times_s, skin).max())
-
-
-def test_a_display_just_inside_the_second_cut_off_may_stay_for_half_an_hour_and_farther_out_it_may_not() -> None:
-    skin, plant = HeldSkin.of(THENAR, MAY), DisplayPlant.of(THENAR, (0.0, 60.0))
-    low, high = skin.lasting_C()
-    times = np.linspace(0.0, 1800.0, 3601)
-    warmest, dose = shown_under(plant, high + SENSOR_K, high + SENSOR_K, times)
-    assert warmest < 42.0 and 0.3 < dose <= 0.4 < 0.5
-    assert shown_under(plant, high + SENSOR_K + 0.4, high, times)[1] > 0.5, "the dose is what decides"
-    cold = plant.held(low - SENSOR_K, plant.steady(low - SENSOR_K), times)[WATCHED.index("cold_receptor_C")].min()
-    colder = plant.held(low - SENSOR_K - 0.3, plant.steady(low), times)[WATCHED.index("skin_C")].min()
-    assert colder < 14.0 <= cold, "a kelvin below the limit of 15 degrees"
-
-
-@pytest.mark.parametrize("for_s", [6.0, 60.0])
-def test_a_display_just_inside_the_first_cut_off_may_stay_until_the_second_acts(for_s: float) -> None:
-    skin, plant = HeldSkin.of(THENAR, MAY), DisplayPlant.of(THENAR, (0.0, 60.0))
-    lasting = skin.lasting_C()
-    high, times = skin.brief_C(lasting, for_s)[1], np.linspace(0.0, for_s, 601)
-    warmest, dose = shown_under(plant, high + SENSOR_K, lasting[1] + SENSOR_K, times)
-    assert warmest <= 43.0 and dose <= 0.5
-    beyond = shown_under(plant, high + SENSOR_K + 0.25, lasting[1], times)
-    assert beyond[0] > 42.9 or beyond[1] > 0.45, "no nearer than it must be"
-    assert high > lasting[1] + 1.0
-
-
-@pytest.mark.parametrize("healthy_s", [0.3, 4.0, 9.1])
-def test_the_second_cut_off_waits_longer_than_any_healthy_stay_and_at_least_five_seconds(healthy_s: float) -> None:
-    skin = HeldSkin.of(THENAR, MAY)
-    lasting = skin.lasting_C()
-    stages = two_stages(LIMITS, skin, (30.0, 41.0), lasting, healthy_s, 1.0)
-    assert stages.held is not None and stages.held.high == lasting[1]
-    assert stages.held.longer_than_s == pytest.approx(max(5.0, 1.25 * healthy_s), abs=0.1)
-    assert not stages.failed and stages.ends_C[1] == 42.0
-    assert one_stage(LIMITS, (30.0, 41.0), lasting, 1.0).failed, "a single one would have to act on the play"
-    assert not one_stage(LIMITS, (30.0, lasting[1] - 0.2), lasting, 1.0).failed
-    assert one_stage(LIMITS, (30.0, lasting[1] - 0.15), lasting, 1.0).failed
-    assert two_stages(LIMITS, skin, (30.0, 41.0), lasting, 1500.0, 1.0).failed, "such a stay is no play"
-
-
-def test_a_play_that_goes_where_no_display_may_be_held_is_refused_with_its_way_out() -> None:
-    """A short peak warms the skin less: with a cut-off that lets it pass, nobody stops a driver that stays there."""
-    rig = sure_rig("thenar").with_(**{"driver.current_limit_A": 3.0})
-
-    def peak(current_A: float) -> Gate:
-        short = Drive([0, 0.2, 1.4, 2.0, 6.0], [REST, -current_A, 0.6, REST, REST], held=True)
-        return gate(short, rig, pause_s=300.0)
-
-    reached = [check.value for check in peak(0.9).once if check.quantity == "display" and check.upper]
-    assert reached[0] < 42.0 and peak(0.9).safe
-    refused = peak(1.25)
-    assert refused.colour == "red" and not refused.mended_by_pause
-    assert str(refused.reason).startswith("display without a fault reaches 4"), refused.reason
-    assert "no cut-off both lets this play pass" in str(refused.reason)
-    (failed,) = (check for check in refused.checks if check.severity == "hard" and not check.passed)
-    assert failed.quantity == "display without a fault", "the play itself is safe"
-    assert failed.value > failed.limit, "what it reaches lies beyond the limit that is told"
 
 
 def test_the_dose_of_zero_current_ends_contact_in_time() -> None:
@@ -454,50 +349,3 @@ def test_a_pause_grows_until_a_cut_off_of_a_tenth_of_a_second_suffices_in_plays(
         return one.cut_off((cut.low, cut.high))[0].react_within_s
 
     assert reaction_s(0.6 * found.shortest_pause_s) < 0.1 <= reaction_s(found.shortest_pause_s)
-
-
-def test_a_pause_grows_where_a_single_cut_off_then_lets_plays_pass_and_a_second_one_is_asked_for_where_none_does() -> (
-    None
-):
-    rig = sure_rig("thenar")
-    warm = Drive([0, 0.1, 2.6, 3.6, 4.6], [REST, -0.35, 0.2, REST, REST], held=True)
-    alone, longer = gate(warm, rig, pause_s=600.0), Drive([0, 0.1, 6.6, 7.6], [REST, -0.3, REST, REST], held=True)
-    assert alone.demands.held_cut_off_display_C is None
-    plant, may = CurrentPlant.of(Ensemble.of(rig)), FaultLimits.of(rig.limits)
-    known, rest = Repeating(plant, [[CurrentPlay(warm, REST)]], rig.limits), plant.ensemble.at_rest(REST)
-    lasting = HeldSkin.of(rig, may).lasting_C()
-
-    def passes(pause_s: float) -> bool:
-        bounds = Beginning.of(known, pause_s, 100.0).after(pause_s).bounds
-        one = Faulty(plant.ensemble, warm, REST, rest, rig.limits, may, bounds=bounds)
-        return not one_stage(rig.limits, shown_between(one, lasting, pause_s).reach_C, lasting, 1.0).failed
-
-    assert alone.repeated.shortest_pause_s > 1.5 * alone.repeated.faultless_pause_s
-    assert passes(alone.repeated.shortest_pause_s) and not passes(0.8 * alone.repeated.shortest_pause_s)
-    held = gate(longer, rig, pause_s=600.0).demands.held_cut_off_display_C
-    assert held is not None and held.longer_than_s > 5.0, "no pause keeps a long hold where a display may stay"
-
-
-@pytest.mark.parametrize(("low_A", "high_A"), [(-0.4, 0.6), (-0.9, 1.5), (-1.5, 0.6)])
-def test_a_driver_is_limited_where_it_would_move_the_skin_too_fast_alike_for_both_signs_where_that_suffices(
-    low_A: float, high_A: float
-) -> None:
-    """On a contact that was not measured, of which the better ones decide."""
-    rig = sure_rig("thenar", "contact_resistance_relative", "gain_relative", "plates_relative")
-    drive = Drive([0, 0.2, 0.4, 0.6, 5.0], [REST, low_A, high_A, REST, REST], held=True)
-    every = Ensemble.of(rig)
-    one = Faulty(every, drive, REST, every.at_rest(REST), LIMITS, MAY)
-    slow = limited([one], [one.moments()])
-    assert slow.limit_A is not None and slow.rate_K_per_s > 10.0
-    low, high = slow.limit_A
-    assert low <= low_A and high >= high_A
-    assert not slow.kept or (low == -high) == (high_A < 1.2)
-    assert slow.kept == (low_A > -1.4)
-    skin = WATCHED.index("skin_C")
-
-    def rate(current_A: float) -> float:
-        values, _ = every.hold(current_A, every.end_of(between(drive, 0.0, 0.4), one.start), np.arange(300) * 0.01)
-        return float(np.abs(np.diff(values[skin], axis=1)).max() / 0.01)
-
-    assert (rate(low) < 10.0) == slow.kept and rate(high) < 10.0
-    assert not slow.kept or rate(1.1 * low) > 10.0, "no narrower than it must be"

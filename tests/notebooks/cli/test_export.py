@@ -248,7 +248,7 @@ def test_players_have_the_strictest_numbers_of_the_gate(glow: Export) -> None:
     assert numbers["WATCHDOG_S"] == pytest.approx(watchdog, rel=1e-6)
     assert numbers["WATCHDOG_S"] <= watchdog != 0.5
     assert numbers["LOW_C"] == pytest.approx(low, abs=1e-5) != 10.0
-    assert numbers["HIGH_C"] == pytest.approx(high, abs=1e-5) != 43.0
+    assert numbers["HIGH_C"] == pytest.approx(high, abs=1e-5)
     react = min(one.cut_off_display_C.react_within_s for one in demands)
     assert numbers["REACT_S"] == pytest.approx(react, rel=1e-6)
     assert numbers["REST_S"] == pytest.approx(rest, rel=1e-6) != 60.0
