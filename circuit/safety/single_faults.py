@@ -56,6 +56,10 @@ class Moments:
     instants: tuple[int, ...]
     stuck_A: float | None = None
 
+    def take(self, lanes: Index) -> Moments:
+        """Some of the lanes, of any instants."""
+        return Moments(self.state.take(lanes), self.command_A[lanes], self.rigs[lanes], (), self.stuck_A)
+
     def stuck_at(self, current_A: float) -> Moments:
         """The same with the driver stuck at a current."""
         return replace(self, command_A=np.full_like(self.command_A, current_A), stuck_A=current_A)
@@ -195,10 +199,10 @@ class Faulty:
         ends = (driver.current_min_A, driver.current_max_A) if bridge_A is None else (-bridge_A, bridge_A)
         return ends if self.limit_A is None else self.limit_A
 
-    def rate_K_per_s(self, moments: Moments, current_A: float) -> float:
-        """How fast the skin moves at most where a driver gets stuck at a current."""
+    def rates_K_per_s(self, moments: Moments, current_A: float) -> Array:
+        """How fast the skin moves at most (lanes,) where a driver gets stuck at a current."""
         skin = self.ensemble.watch(current_A, moments.state, RATE_ROWS_S, moments.rigs, ("skin_C",))[0]
-        return float(np.abs(np.diff(skin, axis=1)).max()) / float(RATE_ROWS_S[1])
+        return np.asarray(np.abs(np.diff(skin, axis=1)).max(axis=1) / RATE_ROWS_S[1])
 
     def _slower_A(self, moments: Moments, low: float, high: float, full: float) -> float | None:
         """A current limit that prevents harm where no cut-off is quick enough, and still plays the drive."""
