@@ -67,13 +67,12 @@ def repeated(*checks: Check, **values: Any) -> Repeated:
 
 
 WORDS = {
-    "corner, as given": lambda m: m.corner_text(NO_CORNER),
     "corner, two": lambda m: m.corner_text((-0.3, *NO_CORNER[1:-1], 0.1)),
     "scenario, bare": lambda m: m.scenario_text(Scenario()),
     "scenario, all": lambda m: m.scenario_text(Scenario(NO_CORNER, "slow", Before("another", 3.0), "zero current")),
     **{
         f"scenario, {plays}": lambda m, plays=plays: m.scenario_text(Scenario("lane", before=Before(plays, 12.34567)))
-        for plays in ("cycle", "warm", "cold", "once", "others", "any")
+        for plays in ("cycle", "warm", "cold", "once", "others")
     },
     "check, hard and just above": lambda m: m.check_text(SKIN),
     "check, below in any play": lambda m: m.check_text(COLD),
@@ -84,8 +83,6 @@ WORDS = {
     "cures, hot plate": lambda m: m.more_and_cure([replace(SKIN, quantity="hot plate")]),
     "cures, baseline": lambda m: m.more_and_cure([FIRST]),
     "cures, soft alone": lambda m: m.more_and_cure([SOFT]),
-    "repeated, safe": lambda m: m.repeated_reason(repeated(SOFT)),
-    "repeated, another pause": lambda m: m.repeated_reason(repeated(SKIN)),
     "repeated, no pause": lambda m: m.repeated_reason(repeated(SKIN, shortest_pause_s=None)),
     "repeated, too soon for hardware": lambda m: m.repeated_reason(
         repeated(SKIN, shortest_pause_s=40.0, faultless_pause_s=8.0)
@@ -111,7 +108,6 @@ def ready(name: str, verdict: Gate, *warnings: str) -> Any:
 SLOW_CUT = replace(MADE_UP, cut_off_display_C=CutOff(20.0, 40.0, 0.0), faults=(FAULTS["stuck, nothing"],))
 NEAR_CUT, NEARLY_CUT = (replace(SLOW_CUT, cut_off_display_C=CutOff(20.0, 40.0, react_s)) for react_s in (0.02, 0.0199))
 LIMITED = replace(SLOW_CUT, faults=(FAULTS["stuck, current limit"],))
-OTHER = replace(MADE_UP, zero_current_at_most_s=200.0, current_limit_A=(-0.9, 1.5), rest_before_first_play_s=None)
 STRICT = replace(
     MADE_UP, watchdog_s=0.0, cut_off_display_C=CutOff(22.0, 39.0, 0.05), polarity_check=replace(POLARITY, needed=False),
     rest_before_first_play_s=0.0, pause_at_least_s=None, zero_current_at_most_s=300.0, current_limit_A=(-1.0, 1.2),
@@ -129,27 +125,21 @@ GATE_WORDS = {
     "one": lambda m: m.gate_words([ready("a", PLAIN), ready("b", gated(SKIN)), Record(verdict=None, delivery=None)]),
     "two": lambda m: [about for about, _ in m.gate_words([ready("a", PLAIN), ready("b", PLAIN)])],
     "stuck": lambda m: m.gate_words([ready("a", gated(demands=SLOW_CUT))]),
-    "stuck of one": lambda m: m.stuck_text(of(MADE_UP, SLOW_CUT)),
     "stuck, two cures": lambda m: m.stuck_text(of(SLOW_CUT, LIMITED)),
     "stuck, just too slow": lambda m: m.stuck_text(of(NEARLY_CUT)),
     "stuck, just quick enough": lambda m: (m.stuck_text(of(NEAR_CUT)), m.demands_text(of(NEAR_CUT))),
-    "repeated, alike": lambda m: m.repeated_text([("a", PLAIN), ("b", PLAIN)]),
     "repeated, unlike": lambda m: m.repeated_text([
         ("a", gated(recovery_s=None, plays=30, faultless_pause_s=8.0, shortest_pause_s=None)),
         ("b", AMBER),
     ]),
     "repeated, recoveries": lambda m: m.repeated_text([("a", gated(recovery_s=30.0)), ("b", gated(recovery_s=12.0))]),
-    "repeated, faults need more": lambda m: m.repeated_text([("a", gated(faultless_pause_s=8.0))]),
     "repeated, faults need no more": lambda m: m.repeated_text([("a", gated(faultless_pause_s=20.0))]),
-    "repeated, no pause": lambda m: m.repeated_text([("a", gated(shortest_pause_s=None))]),
     "repeated, seven amber": lambda m: m.repeated_text([
         *((f"i{k}", AMBER) for k in range(7)),
         ("green", PLAIN),
     ]),
-    "demands, made up": lambda m: m.demands_text([("a", PLAIN)]),
     "demands, strict": lambda m: m.demands_text(of(STRICT)),
     "demands, of two": lambda m: m.demands_text(of(MADE_UP, STRICT)),
-    "demands, turned": lambda m: m.demands_text(of(STRICT, OTHER)),
     "demands, no rest": lambda m: m.demands_text(of(
         replace(MADE_UP, rest_before_first_play_s=None, pause_at_least_s=0.0, polarity_check=None))),
     "warnings": lambda m: list(m.warning_lines(
@@ -199,30 +189,22 @@ def refused(m: Any, delivery: Any, verdict: Any = PLAIN, deviation: Any = WITHIN
 
 
 PREPARE = {
-    "safe": lambda m: refused(m, delivered()),
-    "unsafe": lambda m: refused(m, delivered(narrowed=NARROW, outcome=OUT), RED, LOST),
     "unsafe, mended by a pause": lambda m: refused(m, delivered(), PAUSE, LOST),
     "unsafe without a finding": lambda m: refused(m, delivered(), Record(
         colour="red", reason=None, mended_by_pause=False, repeated=repeated(), findings=())),
-    "in words": lambda m: [str(one) for one in m.refusals_of(delivered(), PAUSE, WITHIN)],
-    "lossy": lambda m: refused(m, delivered(), PLAIN, LOST),
     "lossy and narrowed": lambda m: refused(m, delivered(narrowed=NARROW), PLAIN, LOST),
     "lossy, the range misses": lambda m: refused(m, delivered(narrowed=replace(NARROW, outcome=OUT)), PLAIN, LOST),
-    "lossy, not judged": lambda m: refused(m, delivered(narrowed=replace(NARROW, outcome=None)), PLAIN, LOST),
     "lossy by set-points": lambda m: refused(m, thermode(device_warnings=("w",)), PLAIN, LOST),
     "lossy by warnings": lambda m: refused(m, delivered(device_warnings=("w", "v")), PLAIN, LOST),
     "lossy by its loop": lambda m: refused(m, delivered(device=LOOPED), PLAIN, LOST),
     "lossy by its rate": lambda m: refused(m, delivered(device=LOOPED, rate_Hz=89.9), PLAIN, LOST),
     "lossy by its duty": lambda m: refused(m, delivered(device=BRIDGE), PLAIN, LOST),
-    "lossy at one receptor": lambda m: m.lost_text(DeliveryDeviation((replace(LOST.places[0], rms_K=0.0501),))),
     "missed": lambda m: refused(m, delivered(outcome=OUT), PLAIN, LOST),
     "missed and narrowed": lambda m: refused(m, delivered(outcome=OUT, narrowed=NARROW), PLAIN, LOST),
     "missed, unsafe": lambda m: refused(m, delivered(outcome=OUT), RED),
-    "missed by a thermode": lambda m: refused(m, thermode(outcome=OUT)),
     "missed without a limit": lambda m: refused(m, delivered(outcome=replace(OUT, limits=()))),
     "missed for lack of voltage": lambda m: refused(m, delivered(
         outcome=replace(OUT, limits=(("compliance voltage", 1.0),)))),
-    "missed by a loop": lambda m: refused(m, delivered(outcome=OUT, rig=Record(driver=DRIVER, controller="a loop"))),
     "reached": lambda m: refused(m, delivered(outcome=replace(OUT, reached=True))),
     "missed without words": lambda m: refused(m, thermode(outcome=Record(reached=False, reason=None))),
     "warnings": lambda m: m.Prepared(
@@ -314,26 +296,21 @@ PILOT = {
     "as wide": lambda m: shown([m.sets_table(named(predictions=(change("", 0.2),)), ["six.cue"])]),
     "wider": lambda m: shown([m.sets_table(named(predictions=(change("", 0.202),)), ["six.cue"])]),
     "few draws": lambda m: (shown([m.sets_table(named(draws=99), ["six.cue"])]), m.draws_sentences(named(draws=99))),
-    "draws of answers": lambda m: m.draws_sentences(named()),
     "fresh ones of answers": lambda m: m.draws_sentences(
         named(conditioned=conditioned(100, rounds=1, effective_after=29.0))),
     "fresh ones of values": lambda m: m.draws_sentences(named(data="values", conditioned=conditioned(100, rounds=2))),
     "few carry": lambda m: m.draws_sentences(named(data="values", conditioned=conditioned(100, effective_after=29.9))),
     "constants": lambda m: shown(m.constants(named(constants=[MOVED, Record(constant="lab offset")]))),
     "nine constants": lambda m: len(shown(m.constants(named(constants=[MOVED] * 9)))[1]),
-    "no constant": lambda m: shown(m.constants(named(constants=[Record(constant="lab offset")]))),
     "values, missed": lambda m: shown(m.measured_blocks(measured(missed=True, assumed_errors=1))),
     "values, too few": lambda m: m.measured_sentences(measured(total=5)),
     "values, a rating": lambda m: m.measured_sentences(measured(conditions=(Record(kind="rating"),))),
     "values, unlike": lambda m: m.measured_sentences(measured(p=0.01, after=0.049)),
-    "people": lambda m: shown([m.people_table(answers())]),
     "21 people": lambda m: shown([m.people_table(answers(2, people=21))])[0][-3:],
-    "20 people": lambda m: shown([m.people_table(answers(2, people=20))])[0][-3:],
     "one group": lambda m: shown([m.people_table(answers(grouped=True))]),
     "unanswered": lambda m: (
         shown([m.people_table(answers(unanswered=4))]), m.observed_sentences(answers(unanswered=4)),
         m.fit_sentences(named(data=answers(unanswered=4)))[0]),
-    "said of answers": lambda m: m.observed_sentences(answers()),
     "said of a group": lambda m: m.observed_sentences(answers(grouped=True, passed=3)),
     "said of one answer": lambda m: m.observed_sentences(answers(1))[-1],
     "fit": lambda m: m.fit_sentences(named(fit(0.05, p_people=0.2))),
@@ -341,17 +318,12 @@ PILOT = {
     "fit, allowed": lambda m: m.fit_sentences(named(fit(0.1)))[1],
     "fit, one answer": lambda m: m.fit_sentences(named(data=answers(1)))[1],
     "fit, 19 answers": lambda m: m.fit_sentences(named(data=answers(19)))[1],
-    "fit, missed": lambda m: m.fit_sentences(named(fit(0.0499), fit(0.05)))[1],
-    "fit, unexplained": lambda m: m.fit_sentences(named(fit(0.3), fit(0.0499)))[1],
     "fit, unlikely": lambda m: m.fit_sentences(named(fit(0.3), fit(0.0499), 99))[1],
     "fit, kept by few": lambda m: m.fit_sentences(named(fit(0.3), fit(0.05), 99))[1],
-    "fit, pairs by chance": lambda m: m.fit_sentences(named(fit(pairs=[pair(k, k < 2) for k in range(15)])))[1],
     "fit, more pairs": lambda m: m.fit_sentences(named(fit(pairs=[pair(k, k < 3) for k in range(15)])))[1],
-    "no pair": lambda m: shown(m.pairs(fit(pairs=[pair(0, False)]))),
     "pairs": lambda m: shown(m.pairs(
         fit(pairs=[pair(0), pair(1, observed=0.1), *(pair(k, False) for k in range(28))]))),
     "nine pairs": lambda m: shown(m.pairs(fit(pairs=[pair(k) for k in range(9)])))[1][-1],
-    "eight pairs": lambda m: len(shown(m.pairs(fit(pairs=[pair(k) for k in range(8)])))[1]),
     "p": lambda m: [m.p_text(p) for p in (0.0099, 0.01)],
     "misfit": lambda m: [m.misfit(0.04, 0.3, "values", 500), m.misfit(0.3, 0.04, "values", 100, "; cure")],
 }  # fmt: skip

@@ -25,8 +25,8 @@ STEP_A = 0.01
 class Limited:
     """Between which currents in A a driver that gets stuck must stay by itself: None where its own limits suffice.
 
-    `rate_K_per_s` is the fastest skin at its own limits; `kept`: whether the narrower ones keep the limit of rate. They
-    do not where the drives need more current than that.
+    `rate_K_per_s` is the fastest skin: at its own limits, or, where the drives need so much that narrower limits do not
+    keep the limit of rate either (`kept`), at these.
     """
 
     limit_A: Span | None
@@ -62,7 +62,9 @@ def limited(drives: Sequence[Faulty], moments: Sequence[Moments]) -> Limited:
         for widest, need, end_A in zip(widest_A, needs_A, ends_A, strict=True)
     )
     limit_A = -round(below_A, 2), round(above_A, 2)
-    return Limited(limit_A, max(rates), all(rate(end_A, moments) <= most for end_A in limit_A))
+    needed = max(rate(end_A, moments) for end_A in limit_A)
+    kept = needed <= rule.limit
+    return Limited(limit_A, max(rates) if kept else needed, kept)
 
 
 def _widest_A(drives: Sequence[Faulty], moments: Sequence[Moments], end_A: float, most_K_per_s: float) -> float:

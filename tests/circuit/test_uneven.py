@@ -72,7 +72,7 @@ def modes(time_s: Array, begin_s: float) -> Array:
     return np.interp(ROWS, time_s, modes_of(Rig.load("tcs2")).at(time_s + begin_s, course(time_s)))
 
 
-LOGGED = Drive([0.0, 9.999, 10.006, 15.0, 15.05, 25.0], [0.08, 0.6, -0.5, 0.3, 0.08, 0.08], held=True)
+LOGGED = Drive([0.0, 9.999, 10.006, 15.0, 15.291, 15.297, 25.0], [0.08, 0.6, -0.5, 0.3, 0.9, 0.08, 0.08], held=True)
 DENSE = (np.abs(EVEN - 10.0) < 0.5) | (np.abs(EVEN - 15.0) < 0.3)
 ROWS = EVEN[DENSE | (np.arange(len(EVEN)) % 400 == 0) | (EVEN == 25.0) | np.isin(EVEN, CORNERS_S)]
 """Rows of a logger that writes what changes in full, and else every 0.4 s."""

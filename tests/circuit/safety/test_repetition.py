@@ -17,6 +17,7 @@ from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.gate import Gate, gate_set
 from thermicon.circuit.safety.plant import recovery_s
+from thermicon.circuit.safety.playmap import PlayMap
 from thermicon.circuit.safety.repeated import PauseError, Repeating, shortest_pause_s
 from thermicon.circuit.safety.tally import HOTTEST_C, WATCHED, Tally
 from thermicon.circuit.solver.batch_inputs import State
@@ -69,6 +70,16 @@ def test_short_plays_without_a_pause_still_have_their_cycle() -> None:
 def test_what_heats_without_end_has_no_cycle() -> None:
     plant, play = CurrentPlant.of(few().only([0])), CurrentPlay(Drive([0, 1], [-6.0, -6.0]), REST)
     assert (plant.cycle(play, 0.0).nodes_C[:, :-1] == HOTTEST_C).all()
+
+
+def test_a_play_is_said_to_settle_where_its_repetition_does() -> None:
+    """Maps of nodes that warm each other very unequally, whose repetition grows or shrinks by 2 % a play."""
+    random = np.random.default_rng(6)
+    plain = 10.0 ** random.uniform(-3.0, 1.0, (200, 4, 4))
+    largest = np.abs(np.linalg.eigvals(plain)).max(axis=1)
+    for factor, settles in ((0.98, True), (1.02, False)):
+        matrix = factor * plain / largest[:, np.newaxis, np.newaxis]
+        assert (PlayMap(matrix, np.ones((200, 4))).fixed_point()[1] == settles).all()
 
 
 @pytest.mark.parametrize(("pause_s", "near_K"), [(0.0, 15.0), (3.0, 6.0), (20.0, 2.0)])

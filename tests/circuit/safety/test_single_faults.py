@@ -160,6 +160,17 @@ def warmed() -> Gate:
     return gate(WARM, UNSURE, pause_s=60.0)
 
 
+def test_what_a_first_play_does_on_a_display_without_power_is_told_for_a_play_at_once() -> None:
+    """A second of rest before it takes 0.2 K off what the skin reaches."""
+    rig = sure_rig("thenar")
+    told = next(fault.values["finding"] for fault in gate(WARM, rig).demands.faults if fault.kind == "unpowered")
+    every = Ensemble.of(rig)
+    played = every.play(WARM, every.at_rest(0.0))
+    hottest = max(float(values[WATCHED.index("skin_C")].max()) for (_, values), _ in played)
+    assert (told.quantity, told.severity) == ("skin surface", "soft")
+    assert told.value == pytest.approx(hottest, abs=1e-3)
+
+
 def test_a_first_play_after_no_power_survives_a_hang_until_the_watchdog_and_a_driver_stuck_at_any_current() -> None:
     """In all corners: what is demanded suffices, and without the rest it does not."""
     demands, every = warmed().demands, Ensemble.of(UNSURE)
