@@ -195,6 +195,12 @@ def changed_player(quick: Path, folder: Path, text: str) -> Path:
     return study
 
 
+def test_an_interrupt_switches_off(quick: Path, tmp_path: Path) -> None:
+    study = changed_player(quick, tmp_path, "\ndef keep():\n    raise KeyboardInterrupt\n")
+    ran = run_script(study, tmp_path, "--participant", "A", "--simulate")
+    assert ran.returncode != 0 and "A: SWITCHED OFF: INTERRUPTED; 0 answers" in ran.stdout
+
+
 KEEPS = """
 _kept = [0.0]
 def keep():

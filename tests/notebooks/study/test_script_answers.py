@@ -112,7 +112,7 @@ def test_a_participant_has_one_run_in_a_folder_and_a_lock_without_a_run_stops_no
 ) -> None:
     lock = tmp_path / "sub-A_task-quick.lock"
     with module.claimed(tmp_path, "A"):
-        assert lock.exists()
+        assert lock.stat().st_size == 0, "what tried whether there is room is gone"
         second = simulate(quick, tmp_path)
         assert second.returncode == 1 and second.stderr.strip() == (
             f"participant A runs already into {tmp_path}: end that run, or give another --output"
@@ -167,6 +167,61 @@ def test_a_folder_that_is_a_file_or_a_table_that_is_a_folder_is_told(quick: Path
         assert ran.returncode == 1 and words in ran.stderr and "Traceback" not in ran.stderr
 
 
+def test_a_table_that_cannot_be_written_to_is_told_at_the_start(
+    module: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / ANSWERS).write_text(HEADER, encoding="utf-8")
+    opens = Path.open
+
+    def protected(path: Path, mode: str = "r", *more: Any, **named: Any) -> Any:
+        if path.name == ANSWERS and "a" in mode:
+            raise PermissionError(13, "Permission denied")
+        return opens(path, mode, *more, **named)
+
+    monkeypatch.setattr(Path, "open", protected)
+    told = pytest.raises(module.NoDisk, match=r"answers\.csv: Permission denied; make room there, allow writing")
+    with told, module.claimed(tmp_path, "A"):
+        pytest.fail("it ran")
+
+
+def test_stimuli_that_find_no_room_are_told(quick: Path, tmp_path: Path) -> None:
+    study = Path(shutil.copytree(quick, tmp_path / "study"))
+    with (study / "study_answers.py").open("a", encoding="utf-8") as file:
+        file.write("\n\nimport shutil\ndef copyfile(*_):\n    raise OSError(28, 'No space left on device')\n")
+        file.write("shutil.copyfile = copyfile\n")
+    ran = simulate(study, tmp_path / "data")
+    assert (ran.returncode, ran.stdout) == (1, "") and "data: No space left on device; make room" in ran.stderr
+
+
+def test_a_row_is_whole_where_the_system_takes_it_in_parts_and_a_file_is_as_it_was_where_it_takes_none(
+    module: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    writes = os.write
+    monkeypatch.setattr(module.os, "write", lambda file, content: writes(file, content[:3]))
+    module.Table(tmp_path / ANSWERS, module.ANSWERS).add({"participant": "A", "trial": 1, "presented": "dip"})
+    assert (tmp_path / ANSWERS).read_text(encoding="utf-8") == f"{HEADER}A,1,dip,n/a,n/a\n"
+
+    def full(file: int, content: bytes) -> int:
+        raise OSError(28, "No space left on device")
+
+    before = (tmp_path / ANSWERS).read_bytes()
+    monkeypatch.setattr(module.os, "write", full)
+    with pytest.raises(module.NoDisk, match=r"answers\.csv: No space left on device"):
+        module.write_whole(tmp_path / ANSWERS, b"another")
+    assert (tmp_path / ANSWERS).read_bytes() == before and len(list(tmp_path.iterdir())) == 1
+
+
+def test_each_torn_row_has_a_file_of_its_own(module: Any, tmp_path: Path) -> None:
+    for number, torn in ((1, "A,2,dip"), (2, "A,3,gl")):
+        module.given_answers(tmp_path, "A")
+        module.Table(tmp_path / ANSWERS, module.ANSWERS).add({"participant": "A", "trial": number})
+        with (tmp_path / ANSWERS).open("a", encoding="utf-8") as file:
+            file.write(torn)
+    assert list(module.given_answers(tmp_path, "A")) == [1, 2]
+    kept = [tmp_path / f"sub-A_task-quick_answers.torn-{number}.csv" for number in (1, 2)]
+    assert [path.read_text(encoding="utf-8") for path in kept] == ["A,2,dip", "A,3,gl"]
+
+
 GLUED = "A,3,dip,dA,4,glow,glow,2.300\n"
 TABLES: dict[str, tuple[str, list[str], int]] = {
     "empty": ("", [], 0),
@@ -178,7 +233,7 @@ TABLES: dict[str, tuple[str, list[str], int]] = {
     "glued in the first cell": (f"{HEADER}A,1,dip,dip,4.2\nAA,2,dip,dip,4.2\n", ["1"], 1),
     "doubled": (f"{HEADER}A,1,dip,dip,4.2\nA,1,dip,glow,5.1\n", ["1"], 1),
     "too few cells": (f"{HEADER}A,1,dip,dip,4.2\nA,2,dip,dip\n", ["1"], 1),
-    "no number": (f"{HEADER}A,x,dip,dip,4.2\nA,0,dip,dip,4.2\n", [], 2),
+    "no number": (f"{HEADER}A,x,dip,dip,4.2\nA,0,dip,dip,4.2\nA,1x,dip,dip,4.2\n", [], 3),
     "zeros": (f"{HEADER}A,1,dip,dip,4.2\n\0\0\0\0", ["1"], 1),
     "by a spreadsheet": ("\ufeff" + f"{HEADER}A,1,dip,,\n\n".replace("\n", "\r\n"), ["1"], 0),
 }

@@ -31,7 +31,9 @@ def display(quick: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     made = bench_of(quick, monkeypatch).Display("ni", channel="Dev7/ao1")
     made.player.REST_S = made.player.PAUSE_S = 0.0
     made.device = device
-    return made
+    yield made
+    made.abort()  # else its thread would go on, on the card of the next test
+    assert device.open_tasks == 0
 
 
 def test_a_play_does_not_block_and_abort_switches_off(display: Any, quick: Path) -> None:
@@ -82,6 +84,31 @@ def test_the_rest_is_held_before_the_first_play(display: Any, quick: Path) -> No
     assert display.device.out == [first]
     display.play(str(quick / "dip.csv"))
     assert time.monotonic() - begun > 0.05
+
+
+def test_a_sensor_that_hangs_between_plays_does_not_hold_up_the_keys(display: Any, quick: Path) -> None:
+    """The loop that reads them calls keep(), which returns at once, and stops when the answer is overdue."""
+    reads, hangs, answers = itertools.count(), threading.Event(), threading.Event()
+
+    def measured_C() -> float:
+        if hangs.is_set():
+            answers.wait(10.0)
+        return 32.0 + 0.001 * next(reads)
+
+    display.own, display.player.TEST_POLARITY = types.SimpleNamespace(measured_C=measured_C), False
+    display.rest(str(quick / "dip.csv"))
+    display._thread.join()
+    display.keep()
+    hangs.set()
+    begun = last = time.monotonic()
+    with pytest.raises(RuntimeError, match="the sensor took"):
+        while last < begun + 5.0:
+            display.keep()
+            assert time.monotonic() - last < 0.5
+            last = time.monotonic()
+            time.sleep(0.01)
+    answers.set()
+    assert display.device.out[-1] == 0.0
 
 
 def test_abort_switches_off_while_a_sensor_hangs(display: Any, quick: Path) -> None:
@@ -208,7 +235,10 @@ def test_commands_are_sent_to_a_thermode_while_the_keys_are_read(quick: Path, mo
     assert thermode.busy and not calls
     sends.set()
     thermode._thread.join()
+    sends.clear()
     thermode.prepare("glow.txt")
+    assert thermode.busy
+    sends.set()
     thermode._thread.join()
     assert calls == [("prepare", "COM7", "dip.txt"), ("rest", "COM7", "sensor"), ("prepare", "COM7", "glow.txt")]
     del player.keep
@@ -231,10 +261,11 @@ def test_other_devices_have_their_functions(quick: Path, monkeypatch: pytest.Mon
     own = types.SimpleNamespace(send=lambda _: None, off=lambda: done.append("off"))
     bench.Display("send", own).abort()
     thermode = bench.Display.__new__(bench.Display)
-    thermode.player, thermode.plays, thermode._thread = types.SimpleNamespace(abort=lambda: None), "tcs2", None
-    thermode.port = types.SimpleNamespace(write=done.append)
+    line = types.SimpleNamespace(off=lambda: done.append("A"))
+    thermode.player = types.SimpleNamespace(abort=lambda: done.append("abort"), _line=lambda port: line)
+    thermode.plays, thermode.port, thermode._thread = "tcs2", "COM7", None
     thermode.abort()
-    assert done == ["off", b"A"]
+    assert done == ["off", "abort", "A"]
 
 
 def test_the_stand_in_for_an_ni_card_keeps_the_rules_of_the_driver(
