@@ -44,7 +44,7 @@
 #define THERMICON_CLOSED_LOOP @CLOSED_LOOP@ /* 1: codes are set-points of the loop below; 0: codes are put out */
 #define THERMICON_LOW_C @LOW_C@
 #define THERMICON_HIGH_C @HIGH_C@
-#define THERMICON_HELD_LOW_C @HELD_LOW_C@ /* the second cut-off, for HELD_S; 0: needed no more than the first */
+#define THERMICON_HELD_LOW_C @HELD_LOW_C@ /* second cut-off, after HELD_S beyond it; the first and 0 s: not needed */
 #define THERMICON_HELD_HIGH_C @HELD_HIGH_C@
 #define THERMICON_HELD_S @HELD_S@
 #define THERMICON_REACT_S @REACT_S@

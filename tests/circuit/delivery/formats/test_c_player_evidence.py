@@ -97,7 +97,7 @@ STOPS: dict[str, tuple[str, str]] = {
     "no number": ("!(now > THERMICON_SENSOR_LOW_C && now < THERMICON_SENSOR_HIGH_C)", "0"),
     "too cold": ("if (now < THERMICON_LOW_C) thermicon_stop(player, THERMICON_TOO_COLD);", ""),
     "too warm": ("if (now > THERMICON_HIGH_C) thermicon_stop(player, THERMICON_TOO_WARM);", ""),
-    "held": ("thermicon_limit(player, is_held, ","thermicon_limit(player, 0, "),
+    "held": ("thermicon_limit(player, is_held, ", "thermicon_limit(player, 0, "),
     "held while off": ("player->state != THERMICON_OFF && (now", "(now"),
     "off course": ("thermicon_exceeds(beside_K, THERMICON_OFF_COURSE_K)", "0"),
     "off course in open loop": ("THERMICON_CLOSED_LOOP && thermicon_exceeds(beside_K", "thermicon_exceeds(beside_K"),
