@@ -1,0 +1,236 @@
+"""What holds for every loop that may play set-points around a module: its cut-offs, its currents, its gains.
+
+Limits for any loop, in any play after any other, are in `any_loop.py`. Here the loop that the set-points are shaped for
+is tested for oscillation in the fastest and slowest corners.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import Array
+from ..rig.module import ZERO_C_IN_K
+from ..rig.rig import Rig
+from ..safety.checks import Check, Scenario
+from ..safety.demanded import inside_fault
+from ..safety.demands import CutOff, Demands, Loop, PolarityCheck, SingleFault
+from ..safety.display import DisplayCourse, for_good_C
+from ..safety.ensemble import Ensemble, LaneDrives
+from ..safety.fault_limits import FaultLimits
+from ..safety.held import LASTING_S, SENSOR_K, HeldSkin, Span, Stages, around_C, one_stage, two_stages
+from ..safety.polarity import least_fall_K, polarity_check, where_tests_begin
+from ..safety.shown import Stay, healthy_C
+from ..safety.ways_out import with_ways_out_of_set_points
+from ..solver.batch_inputs import Bank, run_regulate
+from ..solver.kernel_regulate import DELAY_S, KD, KI, KP, LAG_S
+from ..solver.network import ALPHA, COLD_J_PER_K, HIGHEST_A, LOWEST_A, RESISTANCE
+from .any_loop import BEYONDS_K, AnyLoop, Limits_A, narrowed_A
+from .delivered_drive import DeliveredDrive
+from .formats.form import samples_of
+from .samples import Samples
+from .shaped import LATE_S, PLAYING, looped
+from .temperatures import FollowingModule, past_most_cooling, rest_of_a_loop, updates_of
+
+DELAYS_S = (0.1, 0.05, 0.02, 0.01, 0.0)
+"""Delays that a loop of the rig may have beside what its file states; the longest that does not swing is demanded."""
+WEAKER = 0.5
+"""Share of the gains from which on a loop is judged."""
+TAKEN_OVER_S = 60.0
+"""A loop has brought a display that was without power to its baseline within this time, or is judged as if never."""
+SETTLING_S, SWING_K = 10.0, 0.2
+"""How long after the last set-point a loop may swing, and by how much a second before that."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LoopProof:
+    """What was proven of every loop around a module for some deliveries: demands on it, and the checks that fail.
+
+    `drives` are the currents of each delivery, `dose_min` what a display adds that a fault holds inside the cut-offs.
+    """
+
+    module: FollowingModule
+    drives: list[LaneDrives]
+    unpowered_C: Span
+    dose_min: float
+    demands: Demands
+    failed: tuple[Check, ...]
+
+    @staticmethod
+    def of(deliveries: Sequence[DeliveredDrive], courses: Sequence[DisplayCourse], dose_before_min: float) -> LoopProof:
+        """Find limits of current, then cut-offs, then gains; `courses` is where displays may go without a fault."""
+        rig = deliveries[0].rig
+        module, plays = FollowingModule.of(looped(rig)), [samples_of(delivery) for delivery in deliveries]
+        loops, unpowered_C = AnyLoop(module, past_most_cooling(module.rigs)), module.unpowered_C()
+        ends_C = [unpowered_C, *map(ends_of, courses)]
+        reach_C = min(low for low, _ in ends_C), max(high for _, high in ends_C)
+        limits_A, swings = loops.limits_A(CutOff(*around_C(rig.limits, reach_C), 0.0), plays)
+        drives = [module.drives(play) for play in plays]
+        flows = np.concatenate([drive.current_A for drive in drives], axis=1)
+        used_A = min(0.0, float(flows.min())), max(0.0, float(flows.max()))
+        skin = HeldSkin.of(rig, FaultLimits.of(rig.limits, dose_before_min))
+        every = _stages(loops, plays, courses, reach_C, skin, narrowed_A(limits_A, used_A))
+        cut, stages, limits_A, stuck = loops.cut_off(every, limits_A, used_A, skin.limits)
+        beyond = _with_ways_out(stages, skin, deliveries)
+        loop, swung = _judged_loop(loops, plays, limits_A, cut, (LATE_S,) if rig.controller is None else DELAYS_S)
+        failed = tuple(check for check in (*swings, *beyond, *stuck, *swung) if not check.passed)
+        polarity, lost = _wiring(module, rig, plays, cut)
+        demands = Demands(
+            watchdog_s=0.0, cut_off_display_C=cut, polarity_check=polarity, rest_before_first_play_s=None,
+            pause_at_least_s=None, zero_current_at_most_s=None, faults=(lost,), held_cut_off_display_C=stages.held,
+            current_limit_A=limits_A, loop=loop,
+        )  # fmt: skip
+        return LoopProof(module, drives, unpowered_C, skin.worst_dose_min(stages), demands, failed)
+
+    @property
+    def inside(self) -> tuple[SingleFault, ...]:
+        """The fault of a loop that is stuck where the first cut-off does not act."""
+        held = self.demands.held_cut_off_display_C
+        return () if held is None else (inside_fault(held, self.demands.cut_off_display_C),)
+
+
+def ends_of(course: DisplayCourse) -> Span:
+    """Between which temperatures in °C a display is."""
+    return float(course.display_C.min()), float(course.display_C.max())
+
+
+def ends_of_traces(deliveries: Sequence[DeliveredDrive]) -> Span:
+    """Between which temperatures in °C the display of the rig as given is."""
+    lows = [float(one.trace.display_C.min()) for one in deliveries]
+    highs = [float(one.trace.display_C.max()) for one in deliveries]
+    return min(lows), max(highs)
+
+
+def _beyond_s(course: DisplayCourse, inside_C: Span) -> float:
+    """For how long in s a play is beyond temperatures without a break."""
+    stay = Stay(inside_C)
+    times_s: Array = course.step_s * np.arange(len(course.display_C), dtype=np.float64)
+    stay.add(times_s, course.display_C[np.newaxis])
+    return stay.beyond_s
+
+
+def _from_no_power_s(loops: AnyLoop, bank: Bank, play: Samples, inside_C: Span) -> float:
+    """For how long in s the weakest loop leaves a display that was without power beyond temperatures."""
+    ensemble = loops.module.ensemble
+    own, period = ensemble.rig.controller, 1.0 / ensemble.rig.driver.update_Hz
+    assert own is not None
+    weakest = WEAKER * own.kp_A_per_K, WEAKER * own.ki_A_per_Ks, own.kd_As_per_K
+    gains = np.zeros((len(ensemble.corners), 5))
+    gains[:, [KP, KI, KD]] = np.outer(ensemble.gain, weakest)
+    gains[:, LAG_S] = own.lag_s
+    times_s: Array = period * np.arange(round(TAKEN_OVER_S / period), dtype=np.float64)
+    goals = np.full((1, len(times_s)), float(play.command[0]))
+    lanes, begun = ensemble.lanes, ensemble.at_rest(0.0).nodes_C
+    none = np.zeros_like(lanes)
+    _, display, _ = run_regulate(bank, lanes, none, period, goals, gains, np.zeros(len(lanes)), begun.copy())
+    stay = Stay(inside_C, since_s=0.0)
+    stay.add(times_s, display)
+    return stay.beyond_s
+
+
+def _stages(
+    loops: AnyLoop,
+    plays: Sequence[Samples],
+    courses: Sequence[DisplayCourse],
+    reach_C: Span,
+    skin: HeldSkin,
+    narrow_A: Limits_A,
+) -> list[Stages]:
+    """Cut-offs around what displays reach, the farther ones first: one each where that suffices, else two."""
+    limits, lasting = loops.module.ensemble.rig.limits, skin.lasting_C()
+    inside, weakest = healthy_C(lasting), loops.within(narrow_A)
+    stays_s = [_beyond_s(course, inside) for course in courses]
+    stays_s += [_from_no_power_s(loops, weakest, play, inside) for play in plays]
+    every = []
+    for beyond_K in BEYONDS_K:
+        stages = one_stage(limits, reach_C, lasting, beyond_K)
+        if stages.failed:
+            stages = two_stages(limits, skin, reach_C, lasting, max(stays_s), beyond_K)
+        every.append(stages)
+    return every
+
+
+def _with_ways_out(stages: Stages, skin: HeldSkin, deliveries: Sequence[DeliveredDrive]) -> tuple[Check, ...]:
+    """What fails of cut-offs, with what would pass."""
+    if not stages.failed:
+        return ()
+    known = HeldSkin(skin.modes[:1], skin.limits).brief_C(stages.lasting, stages.brief_s or LASTING_S)
+    thermode_C = for_good_C(skin.modes, deliveries[0].rig.limits)
+    return with_ways_out_of_set_points(stages.failed, ends_of_traces(deliveries), thermode_C, known)
+
+
+def _wiring(
+    module: FollowingModule, rig: Rig, plays: Sequence[Samples], cut: CutOff
+) -> tuple[PolarityCheck, SingleFault]:
+    """The test of the polarity from any start, and what a loop does that has lost its sensor or its polarity."""
+    every = Ensemble.of(rig)
+    faulty = [module.faulty(play, every) for play in plays]
+    starts = where_tests_begin(every, [one.start for one in faulty], [one.moments() for one in faulty])
+    nominal = module.faulty(plays[0], every.only([0]))
+    polarity, _ = polarity_check(nominal, least_fall_K(every, starts))
+    _, stuck = nominal.cut_off((cut.low, cut.high))
+    lost = SingleFault("loop lost", stuck.colour, {"harms": stuck.values["harms"], "cut_off": cut})
+    return replace(polarity, needed=True), lost
+
+
+def _judged_loop(
+    loops: AnyLoop, plays: Sequence[Samples], limits_A: Limits_A, cut: CutOff, delays_s: Sequence[float]
+) -> tuple[Loop, tuple[Check, ...]]:
+    """The rig's loop, what it may differ by, and the longest delay that does not swing; then a failed check, if any."""
+    bank = loops.within(limits_A)
+    middle_K = float(plays[0].command.mean()) + ZERO_C_IN_K
+    heat_W_per_A = bank.plates[:, ALPHA] * middle_K - bank.plates[:, LOWEST_A] * bank.plates[:, RESISTANCE]
+    speed = heat_W_per_A * loops.module.ensemble.gain / bank.plates[:, COLD_J_PER_K]
+    rigs = sorted({0, int(speed.argmin()), int(speed.argmax())})
+    slew = max(float(np.abs(np.diff(play.command)).max()) * play.rate_Hz for play in plays)
+    own = loops.module.ensemble.rig.controller
+    assert own is not None
+
+    def band(gain: float, low: float) -> tuple[float, float]:
+        return float(f"{low * gain:.4g}"), float(f"{(1.0 + PLAYING) * gain:.4g}")
+
+    kp, ki = own.kp_A_per_K, own.ki_A_per_Ks
+    for delay in delays_s:
+        loop = Loop(
+            band(kp, WEAKER), band(ki, WEAKER), own.kd_As_per_K, delay, own.lag_s, SENSOR_K, float(f"{slew:.3g}"),
+            band(kp, 1.0 - PLAYING), band(ki, 1.0 - PLAYING), own.lag_s,
+        )  # fmt: skip
+        swings = (_swing(loops, bank, rigs, loop, play, cut) for play in plays)
+        failed = tuple(itertools.islice((check for check in swings if not check.passed), 1))
+        if not failed:
+            break
+    return loop, failed
+
+
+def _swing(loops: AnyLoop, bank: Bank, rigs: Sequence[int], loop: Loop, play: Samples, cut: CutOff) -> Check:
+    """How far a play leaves the display beyond its set-points, or swinging after the last of them, at worst."""
+    module = loops.module
+    period = 1.0 / module.ensemble.rig.driver.update_Hz
+    held: Array = updates_of(play.until(float(play.time_s[-1]) + SETTLING_S), period)
+    goals = np.array([held - SENSOR_K, held + SENSOR_K])
+    lanes = list(itertools.product(rigs, range(len(goals))))
+    rests = [rest_of_a_loop(module.rigs[rig], float(goals[goal, 0])) for rig, goal in lanes]
+    rig_of, goal_of = np.array(lanes, dtype=np.int64).T.copy()
+    bias, states = np.array([rest[0] for rest in rests]), bank.states([rest[1] for rest in rests])
+    bias = np.clip(bias, bank.plates[rig_of, LOWEST_A], bank.plates[rig_of, HIGHEST_A])
+    beyond, swing = 0.0, 0.0
+    for kp, ki in zip(loop.kp_A_per_K, loop.ki_A_per_Ks, strict=True):
+        flowing = np.zeros((len(bank.count), 5))
+        flowing[:, [KP, KI, KD]] = np.outer(module.ensemble.gain, [kp, ki, loop.kd_As_per_K])
+        flowing[:, LAG_S], flowing[:, DELAY_S] = loop.sensor_lag_at_most_s, loop.delay_at_most_s
+        _, display, _ = run_regulate(bank, rig_of, goal_of, period, goals, flowing, bias, states)
+        beyond = max(beyond, float(display.max()) - held.max(), held.min() - float(display.min()))
+        late = display[:, -max(2, round(1.0 / period)) :]
+        swing = max(swing, float(np.ptp(late, axis=1).max()))
+    room = min(cut.high - held.max(), held.min() - cut.low) - SENSOR_K
+    value, limit = (beyond, room) if beyond > room or swing <= SWING_K else (swing, SWING_K)
+    since = float(play.time_s[-1]) if value > limit else None
+    gains = f"{loop.kp_A_per_K[1]:g} A/K, {loop.ki_A_per_Ks[1]:g} A/(K·s)"
+    what = f"a loop of {gains} and a lag of {loop.sensor_lag_at_most_s:g} s"
+    cure = "so that its cut-off would act; use a smaller controller.kp_A_per_K or a faster sensor"
+    return Check(
+        "swing of the display", "hard", value, limit, "K", float(play.time_s[-1]), since, cure, run=Scenario(what)
+    )
