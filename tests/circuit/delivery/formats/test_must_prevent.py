@@ -135,7 +135,9 @@ def test_what_is_demanded_is_in_the_script(device: str) -> None:
     played = replace(drive("psychopy", device), content=b"bytes")
     for needed, held in ((demands, (25.0, 38.0, 9.0)), (MADE_UP, (None, None, None))):
         script: dict[str, Any] = {}
-        exec(compile(load_format("psychopy").player([played], needed)["play_icons.py"], "play_icons.py", "exec"), script)
+        exec(
+            compile(load_format("psychopy").player([played], needed)["play_icons.py"], "play_icons.py", "exec"), script
+        )
         script["atexit"].unregister(script["abort"])
         assert (script["HELD_LOW_C"], script["HELD_HIGH_C"], script["HELD_S"]) == held
         assert script["_numbers"]().held_s == held[2]
