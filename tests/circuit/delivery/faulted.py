@@ -206,7 +206,7 @@ def _tried(
             faults.judge("hang", [at], joined([held, after], len(left)))
         elif faults.react_s and "cut-off" in demand["faults"][0]["prevented_by"]:
             faults.add("hang", at, begun, *hung.T)
-        share, wrong_K = rng.uniform(), SENSOR_K * rng.choice([-1, 0, 1], len(bench.every))
+        share, wrong_K = rng.uniform(), faults.sensor_K * rng.choice([-1, 0, 1], len(bench.every))
         cut, second = faults.cut, faults.second
         low, high = rng.choice([cut["low"], second["low"]]), rng.choice([cut["high"], second["high"]])
         inside = rng.choice([low + INSIDE_K, high - INSIDE_K, rng.uniform(low, high)]) - wrong_K
@@ -218,7 +218,7 @@ def _tried(
         faults.add("creeping", at, begun, last, wrong_K=wrong_K, before=first, before_s=rng.uniform(60, 1500))
         for end in (bench.least, bench.most):
             faults.add(f"{'stuck' if bench.open else 'sensor lost,'} at a limit", at, begun, end)
-        if not isinstance(bench, Display):
+        if not faults.made:
             faults.without_power(at, begun)
     faults.play()
 
@@ -268,9 +268,11 @@ class _Tries:
         never = {"low": -NEVER, "high": NEVER, "longer_than_s": NEVER}
         self.held = demand["held_cut_off_display_C"] or never
         self.second = demand["held_cut_off_display_C"] or self.cut
+        self.made = isinstance(bench, Display)  # a thermode, inside of which its maker prevents faults
+        self.sensor_K = 0.0 if self.made else SENSOR_K
         self.off_s = SESSION_S if demand["zero_current_at_most_s"] is None else demand["zero_current_at_most_s"]
         slower = [one["prevented_by"] for one in demand["faults"] if one["fault"] == TOO_FAST]
-        self.rated = not isinstance(bench, Display) and not any(one.startswith("a slower") for one in slower)
+        self.rated = not self.made and not any(one.startswith("a slower") for one in slower)
         found.told["rates of stuck drivers are not kept"] += not self.rated
         self.faults: list[tuple[str, str]] = []
         self.columns: list[tuple[Array, ...]] = []
@@ -315,13 +317,13 @@ class _Tries:
         cut_off = np.flatnonzero(far[:, STAGE])
         ended = state[cut_off]
         far[cut_off] = joined([far[cut_off], self.bench.off(ended, lanes[cut_off], AFTER_S)], len(cut_off))
-        after = joined([self.bench.off(ended, lanes[cut_off], self.off_s)], len(cut_off))
+        after = self.bench.off(ended, lanes[cut_off], max(0.0, self.off_s - AFTER_S))
         after[:, DOSE] += far[cut_off, DOSE] + self.normal[lanes[cut_off], DOSE]
         if not self.react_s:  # the sidecar says so
             first_acted = far[:, STAGE] == 1
             far[first_acted] = joined([], int(first_acted.sum()))
             after = after[far[cut_off, STAGE] == 2]
-        if len(after) and not isinstance(self.bench, Display):
+        if len(after) and not self.made:
             self.found.tried["off after a fault", self.start] += len(after) // len(self.bench.every)
             self.found.margin_K["off after a fault", self.start] = np.inf
             self.found.note_share("off after a fault", self.start, [""], "dose", after[:, DOSE], DOSE_MIN)
@@ -333,7 +335,8 @@ class _Tries:
 
     def judge(self, sort: str, whats: list[str], far: Array) -> None:
         """Temperatures, doses and rates of faults of a sort."""
-        self.found.note(sort, self.start, whats, self.bench.watched(far), WIDER)
-        self.found.note_share(sort, self.start, whats, "dose", far[:, DOSE], FAULT_DOSE_MIN)
+        self.found.note(sort, self.start, whats, self.bench.watched(far), LIMITS if self.made else WIDER)
+        if not self.made:
+            self.found.note_share(sort, self.start, whats, "dose", far[:, DOSE], FAULT_DOSE_MIN)
         if self.rated:
             self.found.note_share(sort, self.start, whats, "rate", far[:, RATE], RATE_K_PER_S)
