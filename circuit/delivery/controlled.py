@@ -21,15 +21,16 @@ from ..safety.checks import Check, Scenario, worst_of
 from ..safety.current import single_of_lanes
 from ..safety.demanded import inside_fault, zero_current_s
 from ..safety.demands import CutOff, Demands, Loop, PolarityCheck, SingleFault
-from ..safety.display import DisplayCourse, DisplayPlant
+from ..safety.display import DisplayCourse, DisplayPlant, for_good_C
 from ..safety.ensemble import Ensemble
 from ..safety.fault_limits import DOSE, FaultLimits
 from ..safety.gate import Gate, gate_shown
-from ..safety.held import SENSOR_K, HeldSkin, Span, Stages, around_C, one_stage, two_stages
+from ..safety.held import LASTING_S, SENSOR_K, HeldSkin, Span, Stages, around_C, one_stage, two_stages
 from ..safety.plant import recovery_s
-from ..safety.polarity import least_fall_K, polarity_check, test_starts
-from ..safety.shown import Stay
+from ..safety.polarity import least_fall_K, polarity_check, where_tests_begin
+from ..safety.shown import Stay, healthy_C
 from ..safety.tally import worst_of_lanes
+from ..safety.ways_out import with_ways_out_of_set_points
 from ..solver.batch_inputs import Bank, run_regulate
 from ..solver.kernel_regulate import DELAY_S, KD, KI, KP, LAG_S
 from ..solver.network import ALPHA, COLD_J_PER_K, HIGHEST_A, LOWEST_A, RESISTANCE
@@ -69,7 +70,7 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
     may = FaultLimits.of(rig.limits, max(_dose_min(verdict) for verdict in verdicts))
     skin = HeldSkin.of(rig, may)
     lasting = skin.lasting_C()
-    inside = lasting[0] + SENSOR_K, lasting[1] - SENSOR_K
+    inside = healthy_C(lasting)
     weakest = loops.within(narrowed_A(limits_A, used_A))
     healthy_s = max(
         *(_beyond_s(course, inside) for pair in courses for course in pair),
@@ -78,7 +79,12 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
     every = [_stages(rig.limits, skin, reach_C, lasting, healthy_s, beyond_K) for beyond_K in BEYONDS_K]
     cut, stages, limits_A, stuck = loops.cut_off(every, limits_A, used_A, may)
     loop, swung = _judged_loop(loops, plays, limits_A, cut, (LATE_S,) if rig.controller is None else DELAYS_S)
-    failed = tuple(check for check in (*swings, *stages.failed, *stuck, *swung) if not check.passed)
+    beyond = stages.failed
+    if beyond:
+        shown_C = ends_of_traces(deliveries)
+        contact = HeldSkin(skin.modes[:1], may).brief_C(lasting, stages.brief_s or LASTING_S)
+        beyond = with_ways_out_of_set_points(beyond, shown_C, for_good_C(skin.modes, rig.limits), contact)
+    failed = tuple(check for check in (*swings, *beyond, *stuck, *swung) if not check.passed)
     polarity, lost = _wiring(module, rig, plays, cut)
     proven = Demands(
         60.0, cut, polarity, None, None, None, (lost,),
@@ -125,10 +131,18 @@ def ends_of(course: DisplayCourse) -> Span:
     return float(course.display_C.min()), float(course.display_C.max())
 
 
+def ends_of_traces(deliveries: Sequence[DeliveredDrive]) -> Span:
+    """Between which temperatures in °C the display of the rig as given is."""
+    lows = [float(one.trace.display_C.min()) for one in deliveries]
+    highs = [float(one.trace.display_C.max()) for one in deliveries]
+    return min(lows), max(highs)
+
+
 def _beyond_s(course: DisplayCourse, inside_C: Span) -> float:
     """For how long in s a play is beyond temperatures without a break."""
     stay = Stay(inside_C)
-    stay.add(course.step_s * np.arange(len(course.display_C)), course.display_C[np.newaxis])
+    times_s: Array = course.step_s * np.arange(len(course.display_C), dtype=np.float64)
+    stay.add(times_s, course.display_C[np.newaxis])
     return stay.beyond_s
 
 
@@ -141,7 +155,7 @@ def _from_no_power_s(loops: AnyLoop, bank: Bank, play: Samples, inside_C: Span) 
     gains = np.zeros((len(ensemble.corners), 5))
     gains[:, [KP, KI, KD]] = np.outer(ensemble.gain, weakest)
     gains[:, LAG_S] = own.lag_s
-    times_s = period * np.arange(round(TAKEN_OVER_S / period))
+    times_s: Array = period * np.arange(round(TAKEN_OVER_S / period), dtype=np.float64)
     goals = np.full((1, len(times_s)), float(play.command[0]))
     lanes, begun = ensemble.lanes, ensemble.at_rest(0.0).nodes_C
     none = np.zeros_like(lanes)
@@ -163,7 +177,7 @@ def _wiring(
     """The test of the polarity from any start, and what a loop does that has lost its sensor or its polarity."""
     every = Ensemble.of(rig)
     faulty = [module.faulty(play, every) for play in plays]
-    starts = test_starts(every, [one.start for one in faulty], [one.moments() for one in faulty])
+    starts = where_tests_begin(every, [one.start for one in faulty], [one.moments() for one in faulty])
     nominal = module.faulty(plays[0], every.only([0]))
     polarity, _ = polarity_check(nominal, least_fall_K(every, starts))
     _, stuck = nominal.cut_off((cut.low, cut.high))

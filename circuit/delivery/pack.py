@@ -15,6 +15,7 @@ from .delivered_drive import DeliveredDrive, loss_table
 from .device import Device
 from .formats import Format, FormatError
 from .formats.form import Played, events_in
+from .formats.tables import write_predicted
 from .prepare import Prepared, Refusal
 from .setpoints import Setpoints, lag_of
 
@@ -55,17 +56,18 @@ def pack(
     shared: dict[str, bytes] = {}
     if form.player is not None and ready:
         played = []
-        for cue, name, (drive, _) in zip(ready, names, drives, strict=True):
+        for cue, name, (drive, content) in zip(ready, names, drives, strict=True):
             judged, repeated = cue.verdict.colour, cue.verdict.repeated
             times = repeated.recovery_s, repeated.shortest_pause_s
-            played.append(Played(cue.delivery, drive, sidecar_name(name, form), judged, *times))
+            played.append(Played(cue.delivery, drive, sidecar_name(name, form), judged, *times, content))
         shared = form.player(played, Demands.strictest([cue.verdict.demands for cue in ready]))
     files: dict[str, bytes] = {}
     for cue, name, (drive, content) in zip(ready, names, drives, strict=True):
         over = [str(refusal) for refusal in cue.refusals]
         over += [str(Refusal("lossy", text)) for text in (losses or {}).get(name, ())]
-        about = sidecar(cue, form, (felt or {}).get(name), over, content, shared)
-        files |= {sidecar_name(name, form): sidecar_text(sealed(about)), drive: content}
+        beside = _predicted_file(cue.delivery, drive)
+        about = sidecar(cue, form, (felt or {}).get(name), over, content, {**shared, **beside})
+        files |= {sidecar_name(name, form): sidecar_text(sealed(about)), drive: content, **beside}
     return {**files, **shared}
 
 
@@ -80,6 +82,14 @@ def _written(cue: Prepared, form: Format) -> bytes:
         return form.write(cue.delivery)
     except FormatError as problem:
         raise FormatError(f"{name}: {problem}") from None
+
+
+def _predicted_file(delivery: DeliveredDrive, drive: str) -> dict[str, bytes]:
+    """The predicted display beside a table of set-points, which a log is compared with."""
+    stem, _, suffix = drive.rpartition(".")
+    if suffix != "csv" or not delivery.device.kind.regulated:
+        return {}
+    return {f"{stem}.predicted.csv": write_predicted(delivery)}
 
 
 def sidecar_name(name: str, form: Format) -> str:

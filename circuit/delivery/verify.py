@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from ..program import own_version, this_program
+from ..safety.demands import DEMANDS
 from .export_folder import Claims, claims_of, table_of
 from .pack import digest, digest_of_content, sealed, sidecar_text
 
@@ -55,6 +56,7 @@ def verify(files: Mapping[str, bytes]) -> Verification:
     for name, each in claims.items():
         about = tables[name] or {}
         findings += [*_own(name, files[name], about), *_names(name, each, claims), *_program(name, about)]
+        findings += _age(name, about)
     if not claims and all(finding.kind != "wrong" for finding in findings):
         findings.append(Remark(".", "wrong", "holds no sidecar", "give a folder that was exported"))
     return Verification(claims, tuple(findings))
@@ -109,6 +111,15 @@ def _names(name: str, claims: Claims, others: Mapping[str, Claims]) -> Iterator[
         yield Remark(name, "wrong", text, "rename it back, or export again")
     if twice := [each for each, other in others.items() if other.drive == claims.drive and each != name]:
         yield Remark(name, "wrong", f"describes {claims.drive}, as {twice[0]} does", "remove the one that is a copy")
+
+
+def _age(name: str, about: Mapping[str, Any]) -> Iterator[Remark]:
+    """Sidecars that lack a demand of today: their drives were judged, and their player checks, by fewer rules."""
+    demands = about.get("hardware_must_prevent")
+    lacks = [demand for demand in DEMANDS if not isinstance(demands, dict) or demand not in demands]
+    if lacks:
+        text = f"is of an older thermicon, which did not judge everything that is demanded now ({lacks[0]} is missing)"
+        yield Remark(name, "wrong", text, "export again")
 
 
 def _program(name: str, about: Mapping[str, Any]) -> Iterator[Remark]:

@@ -38,17 +38,26 @@ def tells_all(time_s: Array, drive: Array, update_Hz: float) -> bool:
     return abs(1.0 / share - round(1.0 / share)) < WHOLE / share
 
 
-def noise_sd(values: Array, resolution: float) -> float:
-    """SD of what changes from row to row, by second differences, which leave slow changes out, of the quietest rows."""
-    bends = np.abs(np.diff(values, 2))
-    own = float(np.quantile(bends, 0.25)) / QUARTILE_SD / np.sqrt(6.0) if bends.size else 0.0
+def off_chords(time_s: Array, values: Array) -> Array:
+    """How far values are off the chord of both neighbours (rows − 2,), over what noise of SD 1 is off it, as SD."""
+    share = (time_s[1:-1] - time_s[:-2]) / (time_s[2:] - time_s[:-2])
+    off = values[1:-1] - (1.0 - share) * values[:-2] - share * values[2:]
+    return np.asarray(off / np.sqrt(1.0 + share**2 + (1.0 - share) ** 2))
+
+
+def noise_sd(time_s: Array, values: Array, resolution: float) -> float:
+    """SD of what changes from row to row: off the chords, which leaves slow changes out, in the quietest rows."""
+    off = np.abs(off_chords(time_s, values))
+    own = float(np.quantile(off, 0.25)) / QUARTILE_SD if off.size else 0.0
     return float(max(own, resolution / np.sqrt(12.0)))
 
 
-def unknown_display(display_C: Array) -> Array:
+def unknown_display(time_s: Array, display_C: Array) -> Array:
     """SD (rows − 1,) of the mean of a display between two rows: the noise of both readings, and what bends there."""
-    bends = np.abs(np.diff(np.pad(display_C, 1, mode="edge"), 2))
-    return np.asarray(np.hypot(noise_sd(display_C, 0.0) / np.sqrt(2.0), 0.125 * (bends[:-1] + bends[1:])))
+    rows = np.concatenate([[2.0 * time_s[0] - time_s[1]], time_s, [2.0 * time_s[-1] - time_s[-2]]])
+    bends = np.sqrt(6.0) * np.abs(off_chords(rows, np.pad(display_C, 1, mode="edge")))
+    noise = noise_sd(time_s, display_C, 0.0) / np.sqrt(2.0)
+    return np.asarray(np.hypot(noise, 0.125 * (bends[:-1] + bends[1:])))
 
 
 def one_phase(time_s: Array, current: Array, display_C: Array) -> Array:
@@ -56,16 +65,25 @@ def one_phase(time_s: Array, current: Array, display_C: Array) -> Array:
 
     A step's course is as large as the step: the display's rate, against half of the greatest jump of readings.
     """
-    there = np.isfinite(display_C)
-    rows = np.interp(time_s, time_s[there], display_C[there])
-    width = max(1, round(SMOOTH_S / float(np.median(np.diff(time_s)))))
-    padded = np.pad(rows, (width // 2, width - 1 - width // 2), mode="edge")
+    there, step_s = np.isfinite(display_C), float(np.median(np.diff(time_s)))
+    even_s = np.arange(time_s[0], time_s[-1] + step_s, step_s)
+    width = max(1, round(SMOOTH_S / step_s))
+    padded = np.pad(
+        np.interp(even_s, time_s[there], display_C[there]), (width // 2, width - 1 - width // 2), mode="edge"
+    )
     rate = np.append(np.diff(np.convolve(padded, np.full(width, 1.0), mode="valid")), 0.0)
-    return np.asarray(0.5 * np.abs(np.diff(current)).max() * rate / max(float(np.abs(rate).max()), 1e-12))
+    rate /= max(float(np.abs(rate).max()), 1e-12)
+    return np.asarray(0.5 * np.abs(np.diff(current)).max() * np.interp(time_s, even_s, rate))
 
 
-def means(time_s: Array, drive: Array, many: int) -> tuple[Array, Array]:
-    """A held drive as its means over so many rows: times and drive (fewer rows,), the last as it is."""
-    at = np.unique(np.append(np.arange(0, len(time_s), many), len(time_s) - 1))
-    total = np.append(0.0, np.cumsum(drive[:-1] * np.diff(time_s)))[at]
+def means(time_s: Array, drive: Array, span_s: float) -> tuple[Array, Array]:
+    """A held drive as its means over such a span or more: times and drive (fewer rows,), the last as it is.
+
+    A row that lasts longer by itself keeps its drive.
+    """
+    steps = np.diff(time_s)
+    begins = np.diff(np.floor((time_s[:-1] - time_s[0]) / span_s + 1e-6), prepend=-1.0) > 0
+    long = steps > (1.0 + 1e-6) * span_s
+    at = np.flatnonzero(np.append(begins | long, True))
+    total = np.append(0.0, np.cumsum(drive[:-1] * steps))[at]
     return time_s[at], np.append(np.diff(total) / np.diff(time_s[at]), drive[-1])

@@ -61,7 +61,7 @@ class Channel:
     @property
     def noise(self) -> float:
         """SD of what changes from row to row, in the quietest rows."""
-        return noise_sd(self.values, self.resolution)
+        return noise_sd(self.time_s, self.values, self.resolution)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -152,7 +152,8 @@ def _run(log: Log, driven_by: str, sensors: Sequence[Log], rig: Rig | None) -> R
         _check_exchanged(each)
         if rig is not None:
             _check_probes(each, rig)
-    begin, step, alone = float(time[0]), float(np.median(np.diff(time))), driven_by == DISPLAY
+    begin, alone = float(time[0]), driven_by == DISPLAY
+    step = round(float(np.median(np.diff(time))), 9)  # differences of late times are off by rounding
     channels = []
     for clock, each in enumerate((log, *sensors)):
         rows = slice(None) if clock else part
@@ -164,7 +165,7 @@ def _run(log: Log, driven_by: str, sensors: Sequence[Log], rig: Rig | None) -> R
                 channels.append(Channel(name, each.name, clock, each.time_s[rows][there], values[there]))
     unknown, phase, points = None, None, False
     if alone:
-        unknown = unknown_display(drive)
+        unknown = unknown_display(time, drive)
     elif rig is not None and not tells_all(time, drive, rig.update_Hz):
         unknown, points = 0.5 * np.abs(np.diff(drive)), step * rig.update_Hz > MOST_UPDATES
         display = dict(log.columns).get(DISPLAY)
@@ -173,7 +174,7 @@ def _run(log: Log, driven_by: str, sensors: Sequence[Log], rig: Rig | None) -> R
     logged, many = None, max(int(FINEST_S / step + 1e-6), len(time) // MOST_STEPS)
     if unknown is None and many > 1:
         logged = Drive(time - begin, drive, held=True)
-        time, drive = means(time, drive, many)
+        time, drive = means(time, drive, many * step)
     notes = []
     if part.stop is not None:
         what = f"{time[0] - log.time_s[0]:.0f} to {time[-1] - log.time_s[0]:.0f} s are fitted"

@@ -1,57 +1,32 @@
-"""The guard of a player: it plays rows after rest and pause but switches off where something is wrong."""
+"""The guard of a player: what is due when it plays, rests or waits, as steps in time; off where something is wrong."""
 
 from __future__ import annotations
 
-import csv
 import math
 import threading
 import warnings
-from bisect import bisect_right
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
+from collections.abc import Callable, Generator, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from .look import Look
+from .watch import SLOWEST_PART, Numbers, Refused, Stopped, Watch
 
 if TYPE_CHECKING:
     from .line import Line
 
-SENSOR_LOWEST_C, SENSOR_HIGHEST_C = -20.0, 120.0  # a thermistor that is open or shorted reads far outside these
 CLOCK_STANDS_S = 0.1  # even a coarse clock of a computer ticks every 0.016 s
-FROZEN_STEPS = 3.0
 NOTHING_S = 1e-9
-
-
-class Refused(RuntimeError):
-    """A play that may not begin."""
-
-
-class Stopped(RuntimeError):
-    """A play that was stopped; the output is off."""
-
-
-class Numbers(NamedTuple):
-    """Limits of a guard in °C, s and K; the command that tests the polarity is in the unit of the line."""
-
-    low_C: float
-    high_C: float
-    look_every_s: float
-    late_s: float
-    rest_s: float
-    pause_s: float
-    frozen_s: float = 1.0
-    sensor_step_K: float = 0.1
-    second_sensor: bool = False
-    test_polarity: bool = False
-    test_command: float = 0.0
-    test_s: float = 1.0
-    test_fall_K: float = 0.1
+FEED_EVERY_S = 0.2
+BREAK_SEND_S = 0.2  # what waits so long for a send to end goes on without it
+TIMED_LOOKS, ANSWER_S = 3, 5.0  # looks that time the sensors before a rest, and how long each may take
 
 
 class Guard:
     """Plays on a line by a clock in s, and looks at the display meanwhile.
 
-    `numbers` is asked at each use, so that they may be changed. What stopped refuses everything until `reset`. Each
-    play may have a second sensor, a function that returns °C: the cut-off then acts on both.
+    `begin_rest` and `begin_play` say what is to happen, each `step` does what is due and returns when the next one is;
+    `rest` and `play` are loops of steps. `numbers` is asked at each use, so that they may be changed. What stopped
+    refuses everything until `reset`. With a second sensor, a function that returns °C, cut-offs act on both.
     """
 
     def __init__(
@@ -59,40 +34,52 @@ class Guard:
     ) -> None:
         self._numbers, self._clock, self._sleep = numbers, clock, sleep
         self._aborted = threading.Event()
-        self._unwatched: Line | None = None
+        self._turn, self._sending = threading.Lock(), threading.RLock()
+        self._watch = Watch(numbers)
+        self._line: Line | None = None
+        self._second_C: Callable[[], float] | None = None
+        self._plan: Iterator[float] | None = None
         self._forget()
 
     def _forget(self) -> None:
         self.rested, self.ended_s = False, -math.inf
         self._held_s: float | None = None
-        self._now_s, self._looked_s, self._stood_s = -math.inf, -math.inf, 0.0
-        self._expect()
+        self._now_s, self._stood_s, self._due_s = -math.inf, 0.0, -math.inf
+        self._look: Look | None = None
+        self._asked_s = self._fed_s = -math.inf
+        self._levels_C: dict[str, float] = {}
+        self._look_s, self._slowest = 0.0, ("", 0.0)
+        self._is_timing = self._on = self._is_blind = False
+        self._why = ""
+        self._watch.forget()
 
-    def _expect(self, points: Sequence[tuple[float, float]] = (), begin_s: float = 0.0) -> None:
-        """Begin a stretch in which the display is to have these °C by time; what was read before is forgotten."""
-        self._expected, self._begin_s = points, begin_s
-        self._readings: dict[str, tuple[float, float, float]] = {}
+    @property
+    def busy(self) -> bool:
+        """Whether a rest or a play goes on."""
+        return self._plan is not None
 
     def abort(self) -> None:
-        """Stop what plays, from any thread."""
+        """Switch off at once and stop what plays, from any thread."""
+        self._why = self._why or "abort() was called"
         self._aborted.set()
-        if self._unwatched is not None:
-            self._unwatched.off()
+        self._put_off()
 
     def reset(self) -> None:
         """Allow playing again after a stop; everything is then as before a first play."""
+        if self.busy:
+            raise Refused("busy: what was stopped has not ended yet; call reset() after it")
         self._forget()
         self._aborted.clear()
 
-    def hold(self) -> None:
-        """Count the rest from now on, since the display is held at what a drive begins with."""
-        if not self.rested:
-            self._held_s = self.now()
+    def prepare(self, line: Line, rows: Sequence[Any]) -> None:
+        """Send rows that begin nothing; the rest counts from their end, since the device holds its baseline then."""
+        self._begin(line, self._second_C, self._preparing(rows), pause_s=0.0)
+        self._run()
 
     def rest(self, line: Line, row: Any, second_C: Callable[[], float] | None = None) -> None:
         """Test the polarity and hold a row (None: it is held already) for as long as before a first play."""
-        with self._on(line, second_C):
-            self._rest(row)
+        self.begin_rest(line, row, second_C)
+        self._run()
 
     def play(
         self,
@@ -107,164 +94,305 @@ class Guard:
 
         `expected` are times and the °C that the display then has. Without `watch` it returns after the first row.
         """
-        with self._on(line, second_C):
-            if not self.rested:
-                self._rest(rest_row)
-            begin_s, playing = self.now(), None
-            if not watch:
-                self._unwatched, self.ended_s = line, begin_s + rows[-1][0]
-                line.send(rows[0][1])
-                return
-            self._expect(expected, begin_s)
-            for at_s, row in rows:
-                self._wait(begin_s + at_s)
-                if row is not None:
-                    if (late_s := self.now() - begin_s - at_s) > self._numbers().late_s:
-                        self._stop(f"this computer was late by {late_s:.2f} s")
-                    playing = line.send(row)
-            self._expect()
-            latest_s = self.now() + 5.0
-            while playing is not None and playing():
-                self._wait(self.now() + self._numbers().look_every_s)
-                if self.now() > latest_s:
-                    self._stop("the device did not end in time")
-            self.ended_s = self.now()
+        self.begin_play(line, rows, rest_row, expected, second_C, watch)
+        self._run()
 
-    def now(self) -> float:
-        """Return the time in s; a clock that goes back, or is not a number, would switch off every guard and stops."""
-        now_s, before_s = float(self._clock()), self._now_s
-        if not before_s <= now_s < math.inf:
-            self._stop(f"the clock of this computer is wrong: it reads {now_s} s after {before_s} s")
-        self._now_s = now_s
-        return now_s
+    def begin_rest(self, line: Line, row: Any, second_C: Callable[[], float] | None = None) -> None:
+        """Have the steps that follow do what `rest` does."""
+        self._begin(line, second_C, self._resting(row), self._numbers().pause_s)
 
-    @contextmanager
-    def _on(self, line: Line, second_C: Callable[[], float] | None) -> Iterator[None]:
-        """Use a line where a play may begin; it is switched off by whatever ends this early."""
-        self._line, self._second_C = line, second_C
-        line.open()
+    def begin_play(
+        self,
+        line: Line,
+        rows: Sequence[tuple[float, Any]],
+        rest_row: Any,
+        expected: Sequence[tuple[float, float]] = (),
+        second_C: Callable[[], float] | None = None,
+        watch: bool = True,
+    ) -> None:
+        """Have the steps that follow do what `play` does."""
+        self._begin(line, second_C, self._playing(rows, rest_row, expected, watch), self._numbers().pause_s)
+
+    def keep(self) -> None:
+        """Look and feed between plays, where that is due; never waits. Raises Stopped where the output went off."""
+        if self.busy or self._line is None or not self._turn.acquire(blocking=False):
+            return  # what plays looks by itself
         try:
+            if not self.busy:
+                self._take_step(float(self._clock()))
+        finally:
+            self._turn.release()
+
+    def step(self, now_s: float) -> float:
+        """Do what is due at a time in s, and return when the next step is due; Stopped where the output went off."""
+        with self._turn:
+            return self._take_step(now_s)
+
+    def _begin(self, line: Line, second_C: Callable[[], float] | None, plan: Iterator[float], pause_s: float) -> None:
+        with self._turn:
+            if self.busy:
+                raise Refused("busy: a rest or a play has not ended; one display plays one drive at a time")
             if self._aborted.is_set():
                 raise Refused("stopped before: find out why, then call reset()")
-            pause_s = self._numbers().pause_s
-            if (left_s := self.ended_s + pause_s - self.now()) > 0:
-                raise Refused(f"the pause of {pause_s:g} s between plays is not over: wait {left_s:.1f} s more")
-            self._unwatched = None
-            yield
-        except Refused:
-            raise
-        except BaseException:
-            self._aborted.set()
-            line.off()
-            raise
+            line.open()
+            self._line, self._second_C = line, second_C
+            try:
+                self._check_clock(float(self._clock()))
+                left_s = self.ended_s + pause_s - self._now_s
+                if left_s > 0 and pause_s > 0:
+                    raise Refused(f"the pause of {pause_s:g} s between plays is not over: wait {left_s:.1f} s more")
+            except Stopped as problem:
+                self._fail(problem)
+                raise
+            if self._look is None or self._look.done.is_set():  # one that hangs still counts
+                self._look, self._asked_s = None, -math.inf
+            self._due_s, self._plan, self._levels_C, self._is_blind = self._now_s, plan, {}, False
 
-    def _rest(self, row: Any) -> None:
+    def _run(self) -> None:
+        """Take steps until the plan has ended."""
+        try:
+            next_s = self.step(float(self._clock()))
+            while self.busy:
+                self._wait(next_s)
+                next_s = self.step(float(self._clock()))
+        except BaseException as problem:
+            if self.busy:  # an interrupt while it waited
+                self._fail(problem)
+            raise
+        if self._aborted.is_set():
+            raise Stopped(self._why)
+
+    def _wait(self, until_s: float) -> None:
+        """Wait until a time in s, or until the sensors have answered; a clock that stands still meanwhile stops."""
+        look, now_s = self._look, float(self._clock())
+        if look is not None and until_s > now_s and look.done.wait(until_s - now_s):
+            return
+        now_s = float(self._clock())
+        left_s = min(until_s - now_s, CLOCK_STANDS_S)
+        if not left_s > NOTHING_S:
+            return
+        self._sleep(left_s)
+        self._stood_s = self._stood_s + left_s if self._clock() == now_s else 0.0
+        if self._stood_s > CLOCK_STANDS_S:
+            raise Stopped(f"the clock of this computer stands still at {now_s} s")
+
+    def _take_step(self, now_s: float) -> float:
+        try:
+            if self._aborted.is_set():
+                raise Stopped(self._why)
+            self._check_clock(now_s)
+            self._check_looks()
+            if self._look is None:
+                was_busy = self.busy
+                self._go_on()
+                self._feed()
+                if self.busy or not was_busy:  # nobody waits for a look that begins as a play ends
+                    self._ask()
+        except Refused:
+            self._plan = None
+            raise
+        except BaseException as problem:
+            self._fail(problem)
+            raise
+        if self._look is not None:
+            return self._asked_s + self._answer_s + 2.0 * NOTHING_S
+        look_s = math.inf if self._is_blind else self._asked_s + self._numbers().look_every_s
+        return min(self._due_s if self.busy else math.inf, look_s, self._fed_s + FEED_EVERY_S)
+
+    def _check_clock(self, now_s: float) -> None:
+        """A clock that goes back, or is not a number, would switch off every guard and stops."""
+        before_s = self._now_s
+        if not before_s <= now_s < math.inf:
+            raise Stopped(f"the clock of this computer is wrong: it reads {now_s} s after {before_s} s")
+        self._now_s = now_s
+
+    @property
+    def _answer_s(self) -> float:
+        """How long a look may take."""
+        return ANSWER_S if self._is_timing else self._numbers().apart_at_most_s
+
+    def _check_looks(self) -> None:
+        """Judge a look that has come back; two looks too far apart stop, whether sensor or computer took so long."""
+        look, gap_s = self._look, self._now_s - self._asked_s
+        is_back = look is not None and look.done.is_set()
+        if look is not None and is_back:
+            self._look, self._look_s, self._slowest = None, look.took_s, look.slowest(gap_s)
+            self._levels_C = look.levels_C()
+            self._is_blind = not self._levels_C
+            if not self.busy:  # between plays nobody promises to call keep() in time
+                gap_s = look.took_s
+        is_watched = look is not None or (self._levels_C and self.busy)
+        if is_watched and self._answer_s + NOTHING_S < gap_s < math.inf:
+            raise Stopped(self._late(gap_s))
+        if is_back:
+            self._watch.see(self._levels_C, self._asked_s, self._now_s, self._on)
+
+    def _late(self, gap_s: float) -> str:
+        """Who took a time in s: the sensor that is asked or was asked last, or else this computer."""
+        name, took_s = self._slowest if self._look is None else self._look.slowest(gap_s)
+        if took_s < 0.5 * gap_s:
+            return f"this computer was late by {gap_s:.2f} s"
+        return f"the {name} took {took_s:.2f} s for a reading, and a look may take {self._answer_s:g} s"
+
+    def _go_on(self) -> None:
+        """Do what is due of the plan; None of it is while a sensor is read."""
+        while self._plan is not None and self._due_s <= self._now_s + NOTHING_S and self._look is None:
+            due_s = next(self._plan, None)
+            if due_s is None:
+                self._plan = None
+            else:
+                self._due_s = due_s
+                if due_s <= self._now_s:  # it waits for a look
+                    return
+
+    def _feed(self) -> None:
+        if self._line is not None and self._now_s >= self._fed_s + FEED_EVERY_S - NOTHING_S:
+            self._fed_s = self._now_s
+            with self._sending:
+                self._line.feed()
+
+    def _ask(self) -> None:
+        """Begin a look where one is due."""
+        assert self._line is not None
+        if self._is_blind or self._now_s < self._asked_s + self._numbers().look_every_s - NOTHING_S:
+            return
+        sensors: dict[str, Callable[[], float | None]] = {"sensor": self._line.read}
+        if self._second_C is not None:
+            sensors["second sensor"] = self._second_C
+        self._asked_s, self._look = self._now_s, Look(sensors, self._clock)
+
+    def _seen(self) -> Generator[float, None, dict[str, float]]:
+        """A look that begins now: °C by sensor."""
+        self._asked_s = -math.inf
+        yield self._now_s
+        return self._levels_C
+
+    def _preparing(self, rows: Sequence[Any]) -> Iterator[float]:
+        for row in rows:
+            self._send(row)
+        yield self._now_s
+        if not self.rested:
+            self._held_s = self._now_s
+
+    def _resting(self, row: Any) -> Iterator[float]:
         """Hold the rest, and a pause at least: nobody knows what played before this program began or was reset."""
         numbers, self.rested = self._numbers(), False
         if numbers.second_sensor and self._second_C is None:
-            warnings.warn("a controller's cut-off needs a second sensor: give its function as second_C", stacklevel=4)
-        self._expect()
+            warnings.warn("a controller's cut-off needs a second sensor: give its function as second_C", stacklevel=2)
+        self._watch.expect()
+        yield from self._timing_sensors(numbers)
         if numbers.test_polarity:
-            self._test_polarity(numbers)
+            yield from self._testing(numbers)
         if row is not None:
-            self._line.send(row)
+            self._send(row)
         if row is not None or self._held_s is None:
-            self._held_s = self.now()
-        self._wait(self._held_s + max(numbers.rest_s, numbers.pause_s))
+            self._held_s = self._now_s
+        yield self._held_s + max(numbers.rest_s, numbers.pause_s)
         self.rested = True
 
-    def _test_polarity(self, numbers: Numbers) -> None:
-        """Put out a command that must cool, and stop where the display does not fall."""
-        before_C = self._look()
-        if before_C is None:
-            return
-        self._line.send(numbers.test_command)
-        self._wait(self.now() + numbers.test_s)
-        after_C = self._look()
-        fell_K = before_C - (math.nan if after_C is None else after_C)
-        if not fell_K >= numbers.test_fall_K:
-            self._stop(
-                f"the display fell by {fell_K:.2f} K, not by {numbers.test_fall_K:g} K, under "
-                f"{numbers.test_command:g} V that must cool: swapped wires, or no current"
-            )
-
-    def _wait(self, until_s: float) -> None:
-        """Look regularly until a time in s; a clock that stands still meanwhile stops."""
-        every_s = self._numbers().look_every_s
-        while True:
-            now_s = self.now()
-            if now_s >= self._looked_s + every_s - NOTHING_S:
-                self._look()
-            left_s = min(until_s, self._looked_s + every_s) - now_s
-            if until_s - now_s <= NOTHING_S:
-                return
-            self._sleep(left_s)
-            self._stood_s = self._stood_s + left_s if self.now() == now_s else 0.0
-            if self._stood_s > CLOCK_STANDS_S:
-                self._stop(f"the clock of this computer stands still at {now_s} s")
-
-    def _look(self) -> float | None:
-        """Look once at both sensors, and return what the first reads; stop where it must not go on."""
-        if self._aborted.is_set():
-            self._stop("abort() was called")
-        self._looked_s = self.now()
-        reading_C = self._read("sensor", self._line.read)
-        if self._second_C is not None:
-            self._read("second sensor", self._second_C)
-        return reading_C
-
-    def _read(self, name: str, read: Callable[[], float | None]) -> float | None:
-        numbers, now_s = self._numbers(), self._looked_s
-        try:
-            answer = read()
-            if answer is None and name == "sensor":
-                return None
-            now_C = float(answer)  # type: ignore[arg-type]
-        except Exception as problem:
-            self._stop(f"the {name} is lost ({problem})")
-        if not SENSOR_LOWEST_C < now_C < SENSOR_HIGHEST_C:  # not a number fails too
-            self._stop(f"the {name} is lost: it reads {now_C} degrees C")
-        if not numbers.low_C <= now_C <= numbers.high_C:
-            self._stop(f"the display is at {now_C:.2f} degrees C, outside {numbers.low_C:g} to {numbers.high_C:g}")
-        due_C = _at(self._expected, now_s - self._begin_s)
-        last_C, since_s, from_C = self._readings.get(name, (math.nan, now_s, due_C))
-        moved_K = abs(due_C - from_C)
-        if now_C != last_C:
-            self._readings[name] = now_C, now_s, due_C
-        elif now_s - since_s > numbers.frozen_s and moved_K > FROZEN_STEPS * numbers.sensor_step_K:
-            self._stop(f"the {name} is frozen: it has read {now_C:.3f} degrees C while {moved_K:.2f} K were predicted")
-        return now_C
-
-    def _stop(self, why: str) -> NoReturn:
-        self._aborted.set()
-        raise Stopped(why)
-
-
-def _at(points: Sequence[tuple[float, float]], time_s: float) -> float:
-    """The °C at a time, linear between points and held outside them; 0 without points."""
-    if not points:
-        return 0.0
-    after = min(max(1, bisect_right(points, (time_s, math.inf))), len(points) - 1)
-    (from_s, from_C), (to_s, to_C) = points[after - 1], points[after]
-    return from_C + (to_C - from_C) * min(max((time_s - from_s) / (to_s - from_s), 0.0), 1.0)
-
-
-def columns_of(drive_file: str, *names: str) -> list[list[float]]:
-    """Times in s and other columns of a drive file; Refused where its rows do not come at one rate from 0 s on."""
-    with Path(drive_file).open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    try:
-        columns = [[float(row[name]) for row in rows] for name in ("time_s", *names)]
-    except (KeyError, TypeError, ValueError) as problem:
-        raise Refused(f"{drive_file}: not a drive, a cell cannot be read ({problem})") from None
-    times = columns[0]
-    step_s = times[-1] / (len(times) - 1) if len(times) > 1 else math.nan
-    if not all(math.isfinite(value) for column in columns for value in column) or not step_s > 0:
-        raise Refused(f"{drive_file}: a drive has two rows or more, with times and commands that are numbers")
-    for place, time_s in enumerate(times):
-        if abs(time_s - place * step_s) > 1e-3 * step_s:
+    def _timing_sensors(self, numbers: Numbers) -> Iterator[float]:
+        """Refuse sensors that always take too long for the cut-off; meanwhile nothing is put out."""
+        looks_s = []
+        self._is_timing = True
+        for _ in range(TIMED_LOOKS):
+            yield from self._seen()
+            looks_s.append(self._look_s)
+        self._is_timing = False
+        act_s = min(numbers.apart_at_most_s, numbers.late_s)  # what is due waits while a sensor is read
+        most_s = SLOWEST_PART * act_s
+        if min(looks_s) > most_s:
             raise Refused(
-                f"{drive_file}, row {place + 1}: at {time_s:g} s, where rows at one rate from 0 s on have "
-                f"{place * step_s:g} s: give a drive with a row for each update, as the format psychopy writes it"
+                f"the sensors take {min(looks_s):.2f} s for a reading, and the guard must act within {act_s:g} s: read "
+                f"them in {most_s:.3g} s, {1.0 / most_s:.3g} times a second"
             )
-    return columns
+
+    def _testing(self, numbers: Numbers) -> Iterator[float]:
+        """Put out a current that must cool, and stop where the display does not fall, by both sensors."""
+        assert self._line is not None
+        if not self._levels_C or not self._test(0.0):
+            if not numbers.polarity_seen.strip():
+                raise Refused(
+                    "the polarity must be tested before a first play, which needs a sensor of the display and a line "
+                    "that puts out a current: give measured_C, and test for a controller; or write into POLARITY_SEEN "
+                    "who saw the display cool under a current that must cool it, and when"
+                )
+            return
+        self._put_off()
+        yield self._now_s + numbers.off_before_test_s
+        before_C = yield from self._seen()
+        self._test(numbers.test_current_A)
+        yield self._now_s + numbers.test_s
+        after_C = yield from self._seen()
+        for name, level_C in before_C.items():
+            fell_K = level_C - after_C.get(name, math.nan)
+            if not fell_K >= numbers.test_fall_K:
+                raise Stopped(
+                    f"the display fell by {fell_K:.2f} K at the {name}, not by {numbers.test_fall_K:g} K, under "
+                    f"{numbers.test_current_A:g} A that must cool: swapped wires, or no current"
+                )
+
+    def _playing(
+        self, rows: Sequence[tuple[float, Any]], rest_row: Any, expected: Sequence[tuple[float, float]], watch: bool
+    ) -> Iterator[float]:
+        if not self.rested:
+            yield from self._resting(rest_row)
+        yield from self._seen()
+        begin_s, playing = self._now_s, None
+        if not watch:
+            self._send(rows[0][1])
+            self.ended_s = begin_s + rows[-1][0]
+            return
+        self._watch.expect(expected, begin_s)
+        for at_s, row in rows:
+            if begin_s + at_s > self._now_s + NOTHING_S:
+                yield begin_s + at_s
+            if row is not None:
+                late_s = self._now_s - begin_s - at_s
+                if late_s > self._numbers().late_s:
+                    raise Stopped(self._late(late_s))
+                playing = self._send(row)
+        self._watch.expect()
+        latest_s = self._now_s + 5.0
+        while playing is not None and playing():
+            if self._now_s > latest_s:
+                raise Stopped("the device did not end in time")
+            yield self._now_s + self._numbers().look_every_s
+        self.ended_s = self._now_s
+
+    def _send(self, row: Any) -> Callable[[], bool] | None:
+        """Put out a row; where abort() came meanwhile, the output goes off again."""
+        assert self._line is not None
+        with self._sending:
+            self._on = True
+            playing = self._line.send(row)
+        if self._aborted.is_set():
+            raise Stopped(self._why)
+        self._check_clock(float(self._clock()))  # a slow line took a while
+        return playing
+
+    def _test(self, current_A: float) -> bool:
+        assert self._line is not None
+        with self._sending:
+            self._on = True
+            can_test = self._line.test(current_A)
+        if self._aborted.is_set():
+            raise Stopped(self._why)
+        return can_test
+
+    def _put_off(self) -> None:
+        """Switch off; what is sent just now ends first, unless it hangs."""
+        if self._line is None:
+            return
+        is_free = self._sending.acquire(timeout=BREAK_SEND_S)
+        try:
+            self._line.off()
+            self._on = False
+        finally:
+            if is_free:
+                self._sending.release()
+
+    def _fail(self, problem: BaseException) -> None:
+        self._why = self._why or str(problem) or type(problem).__name__
+        self._aborted.set()
+        self._plan = self._look = None
+        self._put_off()

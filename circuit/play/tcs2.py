@@ -2,32 +2,62 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import threading
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 TICK_S, STEP_C = 0.01, 0.1
+BREAK_WRITE_S = 0.1
 
 
 class Tcs2Line:
-    """A port that is open; `measured_C` returns the temperature of the display in °C."""
+    """A port that is open; `measured_C` returns the temperature of the display in °C. Use one line for each port."""
 
-    def __init__(self, port: Any, measured_C: Callable[[], float] | None = None) -> None:
-        self._port, self._measured_C = port, measured_C
+    def __init__(self, port: Any) -> None:
+        self._port = port
+        self.measured_C: Callable[[], float] | None = None
+        self._lock, self._left, self._breaks = threading.Lock(), b"", False
 
     def open(self) -> None:
         """Nothing to do: the port is open."""
 
     def send(self, row: str) -> None:
         """Send a command."""
-        self._port.write(row.encode("ascii"))
+        with self._lock:
+            self._left = row.encode("ascii")
+            while self._left and not self._breaks:
+                count = self._port.write(self._left)
+                self._left = b"" if count is None else self._left[count:]
+
+    def test(self, current_A: float) -> bool:
+        """A thermode takes temperatures only."""
+        return False
+
+    def feed(self) -> None:
+        """Nothing to do: a profile ends by itself."""
 
     def read(self) -> float | None:
         """Ask the function of the user."""
-        return None if self._measured_C is None else float(self._measured_C())
+        return None if self.measured_C is None else float(self.measured_C())
+
+    def status(self) -> Mapping[str, object]:
+        """The form of its answers is not known."""
+        return {}
 
     def off(self) -> None:
-        """Abort the stimulation."""
-        self._port.write(b"A")
+        """Abort the stimulation; a command that is half out is ended first, else `A` counts as one of its digits."""
+        self._breaks = True
+        is_free = self._lock.acquire(timeout=BREAK_WRITE_S)
+        if not is_free:
+            self._port.cancel_write()  # the write then returns how many bytes are out
+            is_free = self._lock.acquire(timeout=BREAK_WRITE_S)
+        try:
+            self._port.write(self._left + b"A")
+            self._left = b""
+        finally:
+            self._breaks = False
+            if is_free:
+                self._lock.release()
 
 
 def course_of(commands: Sequence[str]) -> list[tuple[float, float]]:

@@ -23,11 +23,12 @@ from ..solver.network import unpowered
 from ..solver.steady import state_under_current
 from .checks import Before, Check, Scenario
 from .demands import Demands
-from .ensemble import Ensemble, LaneDrives, row_of
+from .ensemble import Ensemble, LaneDrives
 from .plant import ENDING_ROWS_S, LATE_S, LATER_S, OFF_ROWS_S, Future, Plant, Single, Stretch
-from .playmap import MOST_STEPS, PlayMap, bound, least_bound, steady_cycle
+from .playmap import PlayMap, least_bound
 from .polarity import TEST_S, testing_A
 from .repeated import Repeating
+from .simulated import bound, steady_cycle
 from .single_faults import instants, side_by_side
 from .tally import COLDEST_C, HOTTEST_C, WATCHED, Tally
 
@@ -54,19 +55,18 @@ class CurrentPlay:
 
 @dataclass(frozen=True, eq=False)
 class CurrentPlant(Plant[CurrentPlay, State]):
-    """An ensemble as a plant; a play of more than `most_steps` is simulated again and again, shorter ones are maps."""
+    """An ensemble as a plant: its plays are maps, which are only a guide where heat sinks have controllers."""
 
     ensemble: Ensemble
-    most_steps: int
     _rests: dict[CurrentPlay, State] = field(default_factory=dict)
     _maps: dict[CurrentPlay, PlayMap] = field(default_factory=dict)
     endings = ENDINGS
     quick = False
 
     @staticmethod
-    def of(ensemble: Ensemble, most_steps: int = MOST_STEPS) -> CurrentPlant:
+    def of(ensemble: Ensemble) -> CurrentPlant:
         """The plant of an ensemble."""
-        return CurrentPlant(ensemble.rig, ensemble.corners, True, ensemble, most_steps)
+        return CurrentPlant(ensemble.rig, ensemble.corners, True, ensemble)
 
     @property
     def drift_C(self) -> float:
@@ -78,7 +78,7 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         rests = {play: state.take(np.array(corners)) for play, state in self._rests.items()}
         maps = {play: played.only(corners) for play, played in self._maps.items()}
         few = self.ensemble.only(corners)
-        return CurrentPlant(self.rig, few.corners, True, few, self.most_steps, rests, maps)
+        return CurrentPlant(self.rig, few.corners, True, few, rests, maps)
 
     def rest(self, play: CurrentPlay) -> State:
         """Steady states under the resting current."""
@@ -115,43 +115,39 @@ class CurrentPlant(Plant[CurrentPlay, State]):
 
     def after(self, play: CurrentPlay, pause_s: float, state: State) -> State:
         """States before the next play, for those before this one."""
-        played = self._map(play)
-        if played is not None:
-            ended = State(played.after(state.nodes_C), state.sink)
+        if self.ensemble.ideal:
+            ended = State(self._map(play).after(state.nodes_C), state.sink)
         else:
             ended = self.ensemble.end_of(play.drive, state)
         return ended if pause_s <= 0 else self.ensemble.rest(play.rest_A, ended, pause_s)
 
-    def map(self, play: CurrentPlay, pause_s: float) -> PlayMap | None:
-        """A play and its pause as a map of the nodes; None where it is simulated instead."""
-        played = self._map(play)
-        if played is None or pause_s <= 0:
-            return played
-        return played.then(PlayMap(*self.ensemble.modes(play.rest_A).passage(pause_s)))
+    def map(self, play: CurrentPlay, pause_s: float) -> PlayMap:
+        """A play and its pause as a map of the nodes, on heat sinks without controllers."""
+        if pause_s <= 0:
+            return self._map(play)
+        return self._map(play).then(PlayMap(*self.ensemble.modes(play.rest_A).passage(pause_s)))
 
-    def _map(self, play: CurrentPlay) -> PlayMap | None:
-        if not self.ensemble.ideal or play.end_s / row_of(play.drive) > self.most_steps:
-            return None
+    def _map(self, play: CurrentPlay) -> PlayMap:
         if play not in self._maps:
-            self._maps[play] = PlayMap.of(self.ensemble, play.drive, self.rest(play))
+            self._maps[play] = PlayMap.of(self.ensemble.uncontrolled(), play.drive, self.rest(play))
         return self._maps[play]
 
     def cycle(self, play: CurrentPlay, pause_s: float) -> State:
         """The fixed point of the map; a corner that has none is as hot as can be."""
         start, whole = self.rest(play), self.map(play, pause_s)
-        if whole is None:
-            return steady_cycle(partial(self.after, play, pause_s), start)[0]
+        if not self.ensemble.ideal:
+            return steady_cycle(partial(self.after, play, pause_s), whole, start)
         nodes, settles = whole.fixed_point()
         return _at(start, np.where(settles[:, np.newaxis], np.clip(nodes, COLDEST_C, HOTTEST_C), HOTTEST_C))
 
     def bound(self, plays: Sequence[CurrentPlay], pause_s: float, steady: Sequence[State], warm: bool) -> State:
-        """Nodes that no play in any order takes the state beyond."""
+        """Nodes that no play in any order takes the state beyond; as hot as can be where one heats without limit."""
         known = [*map(self.rest, plays), *steady]
-        maps = [whole for play in plays if (whole := self.map(play, pause_s)) is not None]
-        if len(maps) < len(plays):
-            return bound([partial(self.after, play, pause_s) for play in plays], known, warm)
+        maps = [self.map(play, pause_s) for play in plays]
+        if not self.ensemble.ideal:
+            return bound([partial(self.after, play, pause_s) for play in plays], maps, known, warm)
         free = least_bound(maps, [state.nodes_C[:, :-1] for state in known], 1.0 if warm else -1.0)
-        return _at(known[0], np.nan_to_num(free, nan=HOTTEST_C if warm else COLDEST_C))
+        return _at(known[0], np.nan_to_num(free, nan=HOTTEST_C))
 
     def rested(self, play: CurrentPlay, state: State, rest_s: float) -> State:
         """The resting current held."""

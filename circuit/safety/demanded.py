@@ -21,24 +21,25 @@ from ..solver.drive import Drive
 from .checks import Check, colour_of
 from .current import CurrentPlant, CurrentPlay
 from .demands import CutOff, Demands, HeldCutOff, SingleFault
+from .display import for_good_C
 from .ensemble import Ensemble
 from .exposure import cem43_min
 from .fault_limits import DOSE, FaultLimits
-from .held import BEYONDS_K, SENSOR_K, HeldSkin, Stages, one_stage, two_stages
+from .held import BEYONDS_K, HeldSkin, Span, Stages, one_stage, two_stages
+from .in_plays import InPlays, found_at_rest, found_in_plays
 from .plant import Single
-from .polarity import TEST_S, least_fall_K, polarity_check, test_starts, testing_A
+from .polarity import least_fall_K, polarity_check, where_tests_begin
 from .repeated import LONGEST_PAUSE_S, PAUSE_STEP_S, PRACTICAL_S, Repeating, lengthened_s
-from .shown import PAUSE_ROWS_S, Shown, Span, Stay
-from .single_faults import STUCK_SHARES, Faulty
+from .shown import Shown, healthy_C, longest_rest_s, shown_between
+from .single_faults import Faulty
 from .starts import Beginning, Starts
 from .stuck_rate import Limited, limited
 from .tally import HOTTEST_C, WATCHED, Tally
+from .ways_out import with_ways_out_of_drives
 
 Found = tuple[Demands, tuple[Check, ...]]
 """What the hardware must prevent, and checks that fail where it cannot."""
 Singles = Sequence[Single[CurrentPlay, State]]
-
-DISPLAY = WATCHED.index("display_C")
 
 
 def demanded(
@@ -62,14 +63,18 @@ def demanded(
     slow = limited(faults, once)
     begin_s = LONGEST_PAUSE_S if shortest_s is None else shortest_s
     skin = HeldSkin.of(plant.rig, may)
+    lasting = skin.lasting_C()
+    beginning = Beginning.of(repeating, begin_s, max(recovered_s))
+    first_s = longest_rest_s(faults, beginning.left, healthy_C(lasting))
     search = Search(
         singles,
         [replace(one, limit_A=slow.limit_A) for one in faults],
-        Beginning.of(repeating, begin_s, max(recovered_s)),
+        replace(beginning, least_s=float(math.ceil(first_s)) if math.isfinite(first_s) else 0.0),
         skin,
-        skin.lasting_C(),
+        lasting,
+        first_s,
         slow,
-        least_fall_K(plant.ensemble, test_starts(plant.ensemble, [single.start for single in singles], once)),
+        least_fall_K(plant.ensemble, where_tests_begin(plant.ensemble, [single.start for single in singles], once)),
         max(begin_s, *recovered_s),
     ).chosen(begin_s)
     if shortest_s is None:
@@ -82,9 +87,9 @@ def demanded(
 class Search:
     """A search for demands on drives of a set, between pauses in s of which the longest lets all recover.
 
-    `lasting` is where the display may stay, `slow` the current limit of the driver, `fall_K` how far the display falls
-    in a test of the polarity. Cut-offs are `beyond_K` beyond what the display reaches, and `hardest` are the corners of
-    each drive in which watchdog and cut-off are tried.
+    `lasting` is where the display may stay, beyond which a first rest leaves it for `first_s`; `slow` is the current
+    limit of the driver, `fall_K` how far the display falls in a test of the polarity. Cut-offs are `beyond_K` beyond
+    what the display reaches, and `hardest` are the corners of each drive in which watchdog and cut-off are tried.
     """
 
     singles: Singles
@@ -92,6 +97,7 @@ class Search:
     beginning: Beginning[CurrentPlay, State]
     skin: HeldSkin
     lasting: Span
+    first_s: float
     slow: Limited
     fall_K: float
     longest_s: float
@@ -120,25 +126,10 @@ class Search:
         """What the display reaches without a fault, and for how long in s it is beyond where it may stay."""
         if pause_s not in self._shown:
             singles = [check.value for one in self.singles for check in one.checks if check.quantity == "display"]
-            once = Shown(min(singles), max(singles), self._rest_s())
-            later = (shown_between(one, self._healthy_C(), pause_s) for one in self.faulty(pause_s))
+            once = Shown(min(singles), max(singles), self.first_s)
+            later = (shown_between(one, healthy_C(self.lasting), pause_s) for one in self.faulty(pause_s))
             self._shown[pause_s] = Shown.of([once, *later])
         return self._shown[pause_s]
-
-    def _healthy_C(self) -> Span:
-        """Inside of which a sensor that is wrong does not show the display beyond where it may stay."""
-        return self.lasting[0] + SENSOR_K, self.lasting[1] - SENSOR_K
-
-    def _rest_s(self) -> float:
-        """How long a first rest leaves the display beyond where it may stay, with the test of the polarity before."""
-        ensemble, longest_s = self.faults[0].ensemble, 0.0
-        for rest_A in {one.rest_A for one in self.faults}:
-            for state in self.beginning.left:
-                stay = Stay(self._healthy_C(), since_s=0.0)
-                display = ensemble.watch(rest_A, state, PAUSE_ROWS_S, ensemble.lanes, ("display_C",))[0]
-                stay.add(PAUSE_ROWS_S, display)
-                longest_s = max(longest_s, stay.beyond_s)
-        return longest_s + TEST_S if longest_s else 0.0
 
     def stages(self, pause_s: float, beyond_K: float | None = None) -> Stages:
         """The cut-offs around plays with a pause between them: one where the longest pause makes that suffice."""
@@ -154,7 +145,7 @@ class Search:
     def chosen(self, begin_s: float) -> Search:
         """The search with cut-offs as far out as suffices for a driver stuck before a play, in the hardest corners."""
         first = self.faulty(self.longest_s)[0]
-        react_s = [_resting(first, self.stages(self.longest_s, one).ends_C)[0].react_within_s for one in BEYONDS_K]
+        react_s = [found_at_rest(first, self.stages(self.longest_s, one).ends_C)[0].react_within_s for one in BEYONDS_K]
         # The farthest that suffices, or the slowest.
         beyond_K = BEYONDS_K[int(np.argmax(np.minimum(react_s, PRACTICAL_S)))]
         ends_C = self.stages(begin_s, beyond_K).ends_C
@@ -172,17 +163,17 @@ class Search:
         cut = CutOff(*stages.ends_C, within_s[1])
         return bool(faulty.beyond_K(faulty.moments(), within_s[0], cut).max() <= 0.0)
 
-    def in_plays(self, pause_s: float, needed: Sequence[Span] | None = None) -> list[_InPlays] | None:
+    def in_plays(self, pause_s: float, needed: Sequence[Span] | None = None) -> list[InPlays] | None:
         """Demands of each drive; None as soon as one needs something quicker than in `needed`."""
         ends_C, faulty, demands = self.stages(pause_s).ends_C, self.faulty(pause_s), {}
         numbers = range(len(self.faults))
         for number in sorted(numbers, key=lambda number: not (needed and any(needed[number]))):  # may not suffice first
-            demands[number] = _in_plays(faulty[number], self.hardest[number], ends_C)
+            demands[number] = found_in_plays(faulty[number], self.hardest[number], ends_C)
             if needed and np.less(demands[number].within_s, needed[number]).any():
                 return None
         return [demands[number] for number in numbers]
 
-    def shortest(self, shortest_s: float) -> tuple[float, list[_InPlays]]:
+    def shortest(self, shortest_s: float) -> tuple[float, list[InPlays]]:
         """The shortest pause from one on with practical demands, and these."""
         numbers, within = range(len(self.faults)), (PRACTICAL_S, PRACTICAL_S)
         longest_s = self.longest_s
@@ -202,21 +193,31 @@ class Search:
             pause_s, added_s = min(longest_s, longer_s), 2.0 * added_s
         return pause_s, in_plays
 
-    def completed(self, in_plays: Sequence[_InPlays], pause_s: float, said_s: float | None) -> list[Found]:
+    def completed(self, in_plays: Sequence[InPlays], pause_s: float, said_s: float | None) -> list[Found]:
         """The whole demands on each drive, and what fails; `said_s` is the pause where one is safe."""
-        stages = self.stages(pause_s)
+        stages, failed = self.stages(pause_s), tuple[Check, ...]()
+        if stages.failed and said_s is not None:
+            thermode_C = for_good_C(self.skin.modes, self.limits)
+            failed = with_ways_out_of_drives(stages.failed, self._as_given_C(), thermode_C)
         rest_s = None if said_s is None else self.beginning.kept_s(self.starts(pause_s), pause_s)
-        resting = _resting(self.faulty(pause_s)[0], stages.ends_C)
+        resting = found_at_rest(self.faulty(pause_s)[0], stages.ends_C)
         found = []
         for number, one in enumerate(in_plays):
             demands = replace(self._demands(number, one, resting, stages, rest_s), pause_at_least_s=said_s)
-            found.append((demands, () if said_s is None else stages.failed))
+            found.append((demands, failed))
         return found
+
+    def _as_given_C(self) -> Span:
+        """Between which temperatures in °C the display of the rig as given is in single plays."""
+        given = np.zeros(len(self.limits.rules), dtype=np.int64)
+        checks = [check for single in self.singles for check in single.tallies[0].checks(given)]
+        levels = [check.value for check in checks if check.quantity == "display"]
+        return min(levels), max(levels)
 
     def _demands(
         self,
         number: int,
-        in_plays: _InPlays,
+        in_plays: InPlays,
         resting: tuple[CutOff, SingleFault],
         stages: Stages,
         rest_s: float | None,
@@ -247,71 +248,6 @@ class Search:
             held_cut_off_display_C=stages.held,
             current_limit_A=slow.limit_A,
         )
-
-
-def shown_between(faulty: Faulty, span_C: Span, pause_s: float) -> Shown:
-    """What the display reaches in plays that begin between bounds, and how long it stays beyond `span_C`."""
-    ensemble, low_C, high_C, longest_s = faulty.ensemble, math.inf, -math.inf, 0.0
-    rows_s = np.append(PAUSE_ROWS_S[pause_s - 1e-6 > PAUSE_ROWS_S], pause_s)
-    for begun in faulty.bounds:
-        stay = Stay(span_C)
-        for (times_s, values), state in ensemble.play(faulty.drive, begun):
-            display = values[DISPLAY]
-            low_C, high_C = min(low_C, float(np.nanmin(display))), max(high_C, float(np.nanmax(display)))
-            stay.add(times_s, display)
-            after = state
-        pause = ensemble.watch(faulty.rest_A, after, rows_s, ensemble.lanes, ("display_C",))[0]
-        stay.add(float(faulty.drive.time_s[-1]) + rows_s, pause)
-        longest_s = max(longest_s, stay.beyond_s)
-    return Shown(low_C, high_C, longest_s)
-
-
-@dataclass(frozen=True, slots=True)
-class _InPlays:
-    """Demands against a host that hangs and a driver stuck at its limit in plays, with both faults."""
-
-    watchdog_s: float
-    cut_off: CutOff
-    hangs: SingleFault
-    stuck: SingleFault
-
-    @property
-    def within_s(self) -> Span:
-        """How quickly watchdog and cut-off must act, in s."""
-        return self.watchdog_s, self.cut_off.react_within_s
-
-
-def _in_plays(faulty: Faulty, hardest: list[int], ends_C: Span) -> _InPlays:
-    """What prevents faults in plays between bounds: found in the `hardest` corners, again where too slow."""
-    for current_A in faulty.ends_A if faulty.ensemble.ideal else ():
-        faulty.ensemble.modes(current_A)  # once for all corners and icons
-    few = faulty.at(hardest)
-    moments = few.moments()
-    watchdog_s, hangs = few.watchdog_s(moments)
-    cut_off, stuck = few.cut_off(ends_C, moments, hangs=not watchdog_s)
-    far_K = few.beyond_K(moments, watchdog_s, cut_off)
-    worst = far_K.reshape(len(far_K), len(moments.instants), -1).max(axis=2).argmax(axis=1)
-    everywhere = replace(faulty, instants=tuple(np.unique(worst).tolist()))
-    moments = everywhere.moments()
-    too_slow = (everywhere.beyond_K(moments, watchdog_s, cut_off) > 0.0).any(axis=0)
-    if too_slow.any():
-        there = faulty.at(np.unique(moments.rigs[too_slow]).tolist())
-        moments = there.moments()
-        watchdog_s, hangs = min((watchdog_s, hangs), there.watchdog_s(moments), key=lambda found: found[0])
-        cut_off, stuck = min(
-            (cut_off, stuck),
-            there.cut_off(ends_C, moments, hangs=not watchdog_s),
-            key=lambda found: found[0].react_within_s,
-        )
-    return _InPlays(watchdog_s, cut_off, hangs, stuck)
-
-
-def _resting(faulty: Faulty, ends_C: Span) -> tuple[CutOff, SingleFault]:
-    """Demands against a driver that gets stuck before a play, between the bounds or without power before."""
-    ensemble, off = faulty.ensemble, faulty.ensemble.at_rest(0.0)
-    test_A = testing_A(ensemble)
-    unpowered = (off, faulty.rest_A), (ensemble.rest(test_A, off, TEST_S), test_A)
-    return faulty.cut_off(ends_C, faulty.resting(unpowered), shares=STUCK_SHARES)
 
 
 def inside_fault(held: HeldCutOff, cut_off: CutOff) -> SingleFault:

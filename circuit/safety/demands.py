@@ -39,7 +39,7 @@ class CutOff:
 class HeldCutOff:
     """A second cut-off: all power goes off where the display is beyond a temperature in °C for longer than a time.
 
-    The time in s counts while the output is on, and begins anew when the display comes back.
+    The time in s counts while a current flows, and begins anew when the display comes back.
     """
 
     low: float

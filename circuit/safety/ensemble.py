@@ -7,7 +7,7 @@ no farther apart than 10 ms, over which the rate of skin temperature is taken, n
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from ..rig.rigfile import RigError
 from ..solver.batch_inputs import Bank, Intervals, State, cut, left_over, run_on
 from ..solver.drive import Drive, DriveError
 from ..solver.modes import ConstantCurrent
-from ..solver.network import Network, network_of
+from ..solver.network import SINK_J_PER_K, Network, network_of
 from ..solver.steady import check_sink, state_under_current, steady_of
 from .corners import Corner, corners_of
 from .plant import Stretch
@@ -78,6 +78,14 @@ class Ensemble:
         few = Ensemble.on(self.rig, tuple(self.corners[k] for k in which), self.bridge_A, self.averaged)
         few._modes.update({current: modes.only(which) for current, modes in self._modes.items()})
         return few
+
+    def uncontrolled(self) -> Ensemble:
+        """The same on ideal heat sinks where they have controllers."""
+        if self.ideal:
+            return self
+        plates = self.bank.plates.copy()
+        plates[:, SINK_J_PER_K] = 0.0
+        return replace(self, bank=replace(self.bank, plates=plates), ideal=True)
 
     @property
     def lanes(self) -> Index:

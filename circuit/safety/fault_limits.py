@@ -37,7 +37,8 @@ class FaultLimits:
         """The limits of a fault in a session that has a dose already."""
         dose = next(rule for rule in limits.rules if rule.quantity == DOSE)
         most = dose.limit if dose.bound is None else dose.bound
-        dose_min = min(DOSE_SHARE * dose.limit, most - dose_before_min)
+        before_min = min(dose_before_min, dose.limit)  # more is refused for itself
+        dose_min = min(DOSE_SHARE * dose.limit, most - before_min)
         hard = (rule for rule in limits.rules if rule.severity == "hard" and not rule.relative and rule.above_C is None)
         wider = [_widened(rule) for rule in hard if rule.quantity in COLUMN_OF]
         return FaultLimits(replace(limits, rules=(*wider, replace(dose, limit=dose_min))), dose_min)
@@ -62,7 +63,7 @@ class FaultLimits:
             farthest = np.maximum(farthest, over)
         dose = self._dose_min(values[WATCHED.index("skin_C")], rows_s, on_s)
         beyond = dose / self.dose_min - 1.0 if self.dose_min > 0.0 else dose + 1.0
-        if beyond.max() > max(float(farthest.max()), 0.0):
+        if harm is None and beyond.max() > 0.0:
             harm = Harm(DOSE, float(dose.max()), "min CEM43")
         return harm, np.maximum(farthest, beyond)
 

@@ -19,6 +19,7 @@ from .display import DisplayCourse, DisplayPlant
 from .ensemble import Ensemble
 from .plant import ENDING_S, Plant, Played, Single, States
 from .repeated import LONGEST_PAUSE_S, Repeated, Repeating, check_pause, plays_in, shortest_pause_s
+from .simulated import check_length
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,6 +163,8 @@ def gate(
         For an impossible resting current.
     PauseError
         For an impossible pause.
+    UnjudgedError
+        Where repeated plays cannot be bounded, or, on a heat sink with its own controller, take too long to simulate.
 
     Examples
     --------
@@ -201,6 +204,7 @@ def gate_set(
     check_pause(pause_s)
     with quiet_blas():
         plant = CurrentPlant.of(Ensemble.of(rig, bridge_A, averaged))
+        check_length(plant.ensemble, [drive for drive, _ in drives])
         rules = rig.limits if limits is None else limits
         return _gated([[CurrentPlay(drive, rest)] for drive, rest in drives], plant, rules, pause_s)
 

@@ -77,10 +77,9 @@ class HeldSkin:
 
     def brief_C(self, lasting_C: Span, for_s: float) -> Span:
         """Between which temperatures in °C a display may be for a time in s, after any in which it may stay."""
-        low, high = (
-            _farthest(before, side, lambda level, before=before: self.endures(level, before, for_s))
-            for before, side in ((lasting_C[0] - SENSOR_K, -1.0), (lasting_C[1] + SENSOR_K, 1.0))
-        )
+        colder, warmer = lasting_C[0] - SENSOR_K, lasting_C[1] + SENSOR_K
+        low = _farthest(colder, -1.0, lambda level: self.endures(level, colder, for_s))
+        high = _farthest(warmer, 1.0, lambda level: self.endures(level, warmer, for_s))
         return inwards(low + SENSOR_K, high - SENSOR_K)
 
     def endures(self, level_C: float, before_C: float, for_s: float) -> bool:

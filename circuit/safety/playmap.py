@@ -7,13 +7,13 @@ warmer than the state before any play in any order: the *warm bound*; the *cold 
 
 A few runs determine a map: one lane per node starts 1 K warmer there, and one starts unchanged. Repetition then costs
 products of small matrices. The least u with u = max(start, Φ₁·u + g₁, Φ₂·u + g₂ …), node by node, comes from Howard's
-iteration: which of them is the largest in each node, solve with those, again until none changes. Long drives, and heat
-sinks with a controller, are simulated instead.
+iteration: which of them is the largest in each node, solve with those, again until none changes. Heat sinks with a
+controller are simulated beside their maps (`simulated.py`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -21,13 +21,16 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arrays import Array
+from ..inputs import InputError
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 from .ensemble import Ensemble, LaneDrives
-from .tally import COLDEST_C, HOTTEST_C
 
-MOST_STEPS = 20_000
-"""A drive of more steps is simulated repeatedly instead: a map takes some 50 runs, a search for a cycle about ten."""
+MOST_ROWS = 20_000
+"""A drive of more rows is thinned for the matrix of its map, which takes some 50 runs."""
+
+THIN_S = 0.01
+"""Length of the intervals of a thinned drive, as of the longest steps of a simulation."""
 
 MOST_CHOICES = 60
 """Most iterations of Howard's method; a handful is usual."""
@@ -41,6 +44,16 @@ ROUNDING_K = 1e-11
 NEAR_K = 1e-6
 """Tolerance for the growth of a bound in one more play: rounding."""
 
+NO_BOUND = (
+    "not judged: no bound was found for the temperatures of repeated plays; use a longer pause, fewer icons, or a "
+    "smaller or shorter change"
+)
+"""What is said of plays whose bound an iteration did not reach, in place of any temperature."""
+
+
+class UnjudgedError(InputError):
+    """A drive of which no verdict can be computed: it is refused, though nothing says that it is unsafe."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlayMap:
@@ -51,17 +64,29 @@ class PlayMap:
 
     @staticmethod
     def of(ensemble: Ensemble, drive: Drive | LaneDrives, start: State) -> PlayMap:
-        """The map of a drive in every corner of an ensemble whose heat sinks are ideal."""
+        """The map of a drive in every corner of an ensemble whose heat sinks are ideal.
+
+        A long drive is itself played from `start`. Only the differences from there are those of the thinned one: the
+        current pumps a few hundredths as much heat of them, so that at most 1e-4 of a difference is wrong.
+        """
         corners, nodes = start.nodes_C.shape
         free = nodes - 1
         warmer = np.zeros((free + 1, nodes))
         warmer[1:, :free] = np.eye(free)
         begun = (start.nodes_C[:, np.newaxis] + warmer).reshape(-1, nodes)
         rigs = np.repeat(np.arange(corners, dtype=np.int64), free + 1)
-        ended = ensemble.end_of(drive, State.settled(begun), rigs).nodes_C
+        thin = thinned(drive)
+        ended = ensemble.end_of(thin, State.settled(begun), rigs).nodes_C
         ended = ended.reshape(corners, free + 1, nodes)[:, :, :free]
         matrix = np.swapaxes(ended[:, 1:] - ended[:, :1], 1, 2)
-        return PlayMap(matrix, ended[:, 0] - np.einsum("cij,cj->ci", matrix, start.nodes_C[:, :free]))
+        from_start = ended[:, 0]
+        if thin is not drive:
+            from_start = ensemble.end_of(drive, State.settled(start.nodes_C)).nodes_C[:, :free]
+        return PlayMap(matrix, np.zeros_like(from_start)).through(start.nodes_C[:, :free], from_start)
+
+    def through(self, before_C: Array, after_C: Array) -> PlayMap:
+        """The map with this matrix that takes nodes (rigs, m) to others."""
+        return PlayMap(self.matrix, after_C - np.einsum("cij,cj->ci", self.matrix, before_C))
 
     def after(self, nodes_C: Array) -> Array:
         """Nodes (rigs, m + 1) afterwards; the last, which is deep, stays."""
@@ -83,6 +108,19 @@ class PlayMap:
         return point, np.array([_settles(matrix) for matrix in self.matrix]) & np.isfinite(point).all(axis=1)
 
 
+def thinned(drive: Drive | LaneDrives) -> Drive | LaneDrives:
+    """A drive, or of one with too many rows the means of its current in intervals of about THIN_S; longer rows stay."""
+    times, currents = drive.time_s, drive.current_A
+    if len(times) - 1 <= MOST_ROWS:
+        return drive
+    lengths = np.diff(times)
+    new = np.diff(np.floor(times[:-1] / THIN_S), prepend=-1.0) > 0.0
+    begins = np.flatnonzero(new | (lengths >= 0.5 * THIN_S))
+    during = currents[..., :-1] if drive.held else 0.5 * (currents[..., :-1] + currents[..., 1:])
+    means = np.add.reduceat(during * lengths, begins, axis=-1) / np.add.reduceat(lengths, begins)
+    return type(drive)(np.append(times[begins], times[-1]), np.append(means, currents[..., -1:], axis=-1), True)
+
+
 def _settles(matrix: Array) -> bool:
     """Whether all eigenvalues of a matrix without negative entries lie inside the unit circle.
 
@@ -101,7 +139,10 @@ def _settles(matrix: Array) -> bool:
 
 
 def least_bound(maps: Sequence[PlayMap], starts_C: Sequence[Array], side: float) -> Array:
-    """Nodes (rigs, m) that starts and plays never exceed, by `side` 1 above or −1 below; checked, NaN for none."""
+    """Nodes (rigs, m) that starts and plays never exceed, by `side` 1 above or −1 below; checked.
+
+    NaN where some play heats without limit when repeated; raises UnjudgedError where none does and no bound is found.
+    """
     most = np.max([side * start for start in starts_C], axis=0)
     matrices = np.stack([np.zeros_like(maps[0].matrix), *(each.matrix for each in maps)])
     constants = np.stack([most, *(side * each.constant for each in maps)])
@@ -118,6 +159,9 @@ def least_bound(maps: Sequence[PlayMap], starts_C: Sequence[Array], side: float)
             break
     after = (np.einsum("kcij,cj->kci", matrices, now) + constants).max(axis=0)
     holds = (after <= now + NEAR_K).all(axis=1)
+    for corner in np.flatnonzero(~holds).tolist():
+        if all(_settles(each.matrix[corner]) for each in maps):
+            raise UnjudgedError(NO_BOUND)
     return side * np.where(holds[:, np.newaxis], now, np.nan)
 
 
@@ -131,85 +175,3 @@ def _solved(matrix: Array, constant: Array) -> Array:
             with suppress(np.linalg.LinAlgError):
                 solution[rig] = np.linalg.solve(system, offset)
     return solution
-
-
-CLOSE_K = 2e-5
-"""A cycle is steady when it returns to its start within this."""
-MOST_PLAYS, REMEMBERED = 40, 6
-"""Most plays in the search for a steady cycle, and the number of past plays that the acceleration uses."""
-BOUND_K = 1e-3
-"""Added to a bound that grows by less than this in one more play, so that it grows no further."""
-
-After = Callable[[State], State]
-"""States before the next play, for those before this one."""
-
-
-def steady_cycle(after: After, start: State) -> tuple[State, npt.NDArray[np.bool_]]:
-    """Return the states before each play of a cycle that repeats itself, and whether each lane has one (lanes,).
-
-    Anderson's acceleration of x ← F(x), one lane at a time: the next guess is the mean of the last plays' results whose
-    changes cancel best. A lane without a steady cycle heats from play to play without limit.
-    """
-    first = after(start)  # the controller of a heat sink has begun here
-    here, there = _joined(first), _joined(after(first))
-    guesses, results = [here], [there]
-    settled = _change(there - here) <= CLOSE_K
-    for _ in range(MOST_PLAYS):
-        if settled.all():
-            break
-        guess = results[-1].copy()
-        for lane in np.flatnonzero(~settled):
-            guess[lane] = _mixed([g[lane] for g in guesses], [r[lane] for r in results])
-        guess = np.clip(np.nan_to_num(guess, nan=HOTTEST_C), COLDEST_C, HOTTEST_C)
-        result = _joined(after(_parted(guess, start)))
-        guesses, results = [*guesses[-REMEMBERED:], guess], [*results[-REMEMBERED:], result]
-        settled = _change(result - guess) <= CLOSE_K
-    state = results[-1].copy()
-    state[~settled] = np.where(np.isfinite(state[~settled]), state[~settled], HOTTEST_C)
-    return _parted(state, start), settled
-
-
-def bound(afters: Sequence[After], known: Sequence[State], warm: bool) -> State:
-    """States warmer (or colder) than before any play in any order; `known`: before first plays and in steady cycles."""
-    side, start = 1.0 if warm else -1.0, known[0]
-    now = np.max([side * state.nodes_C for state in known], axis=0)
-    before = np.zeros(len(now))
-    for _ in range(MOST_PLAYS):
-        at = State(side * now, start.sink)
-        then = np.max([side * after(at).nodes_C for after in afters], axis=0)
-        grown = np.nan_to_num(then - now, nan=HOTTEST_C)
-        grown = np.where(grown > NEAR_K, grown, 0.0)
-        change = grown.max(axis=1)
-        if not change.any():
-            return State(side * now, start.sink)
-        if (change <= BOUND_K).all():
-            now[:, :-1] += np.where(change > 0, BOUND_K, 0.0)[:, np.newaxis]
-            continue
-        share = np.clip(change / np.where(before > 0, before, np.inf), 0.0, 0.95)
-        now = np.minimum(now + grown / (1.0 - share)[:, np.newaxis], HOTTEST_C)
-        before = change
-    return State(np.full_like(now, HOTTEST_C if warm else COLDEST_C), start.sink)
-
-
-def _mixed(guesses: list[Array], results: list[Array]) -> Array:
-    """The mean of results, with weights that sum to 1, for which the same mean of results − guesses is smallest."""
-    left = np.array(results) - np.array(guesses)
-    if len(left) < 2 or not np.isfinite(left).all():
-        return results[-1]
-    steps = np.diff(left, axis=0).T
-    weights, *_ = np.linalg.lstsq(steps, left[-1], rcond=1e-10)
-    return np.asarray(results[-1] - np.diff(np.array(results), axis=0).T @ weights)
-
-
-def _joined(state: State) -> Array:
-    """Nodes and heat sinks side by side, (lanes, nodes + 4)."""
-    return np.concatenate([state.nodes_C, np.nan_to_num(state.sink)], axis=1)
-
-
-def _parted(joined: Array, like: State) -> State:
-    nodes = like.nodes_C.shape[1]
-    return State(np.ascontiguousarray(joined[:, :nodes]), np.ascontiguousarray(joined[:, nodes:]))
-
-
-def _change(moved: Array) -> Array:
-    return np.asarray(np.abs(np.nan_to_num(moved, nan=HOTTEST_C)).max(axis=1))

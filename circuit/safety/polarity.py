@@ -28,7 +28,7 @@ def testing_A(ensemble: Ensemble) -> float:
     return math.floor(1e3 * min(TEST_A, ensemble.rig.driver.current_max_A) + 1e-9) / 1e3
 
 
-def test_starts(ensemble: Ensemble, rests: Sequence[State], plays: Sequence[Moments]) -> Moments:
+def where_tests_begin(ensemble: Ensemble, rests: Sequence[State], plays: Sequence[Moments]) -> Moments:
     """Where the output may be put off before a test: in a rest, at instants of first plays, without power."""
     still = [*rests, ensemble.at_rest(0.0)]
     states = side_by_side([*(moments.state for moments in plays), *still])

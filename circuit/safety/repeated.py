@@ -3,6 +3,7 @@
 import math
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Generic
@@ -14,6 +15,7 @@ from ..inputs import InputError
 from ..rig.rules import Limits
 from .checks import Before, Check, Judged, Scenario, colour_of
 from .plant import RECOVERY_ROWS_S, GatePlay, Plant, Played, States, follow, left_s
+from .playmap import UnjudgedError
 from .tally import Tally
 
 LONGEST_PAUSE_S = 600.0
@@ -132,10 +134,13 @@ class Repeating(Generic[Played, States]):
             yield tallies
 
     def safe(self, pause_s: float, endings: bool = True) -> bool:
-        """Whether no hard limit is passed with a pause between plays."""
+        """Whether plays with a pause between them are judged, and pass no hard limit."""
         known = self._known.get(pause_s) if endings else None
-        drives = known or self._tallies(pause_s, endings)
-        return all(tally.passes() for drive_tallies in drives for tally in drive_tallies)
+        try:
+            drives = known or self._tallies(pause_s, endings)
+            return all(tally.passes() for drive_tallies in drives for tally in drive_tallies)
+        except UnjudgedError:
+            return False
 
     def judged(
         self, play: Played, before: Before, state: States, begun_C: Array | None, endings: bool
@@ -168,10 +173,12 @@ def shortest_pause_s(repeating: Repeating[Played, States]) -> float | None:
     """The shortest safe pause in s, to 0.1 s; None up to 10 min. Searched in the worst corners, and checked in all."""
     deciding, pause_s = set[int](), 0.0
     while True:
-        tallies = [tally for drive_tallies in repeating.tallies(pause_s) for tally in drive_tallies]
-        if all(tally.passes() for tally in tallies):
-            return pause_s
-        worst = {corner for tally in tallies for corner in tally.worst_lanes()}
+        worst = set(range(len(repeating.plant.corners)))
+        with suppress(UnjudgedError):
+            tallies = [tally for drive_tallies in repeating.tallies(pause_s) for tally in drive_tallies]
+            if all(tally.passes() for tally in tallies):
+                return pause_s
+            worst = {corner for tally in tallies for corner in tally.worst_lanes()}
         if worst <= deciding:
             break
         deciding |= worst

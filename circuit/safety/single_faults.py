@@ -42,7 +42,7 @@ LIMITS_TRIED = 6
 """Current limits between the driver's own and the peak of the drive."""
 STUCK_SHARES = (1.0, 0.5, 0.25)
 """Shares of the driver's limits at which it may be stuck: beyond what holds the display at the cut-off."""
-RATE_ROWS_S = np.arange(151) * 0.01
+RATE_ROWS_S: Array = np.arange(151, dtype=np.float64) * 0.01
 """Rows in which the rate of skin is highest after a driver got stuck."""
 
 

@@ -37,11 +37,15 @@ class Starts(Generic[States]):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Beginning(Generic[Played, States]):
-    """Possible starts of drives: after `recovery_s` of rest at most from `left` (warm, cold), or after other plays."""
+    """Possible starts of drives: after a rest from `left` (warm, cold), or after other plays.
+
+    The rest takes `recovery_s` at most, and at least until a display is where it may stay (`least_s`).
+    """
 
     repeating: Repeating[Played, States]
     left: tuple[States, States]
     recovery_s: float
+    least_s: float = 0.0
 
     @staticmethod
     def of(repeating: Repeating[Played, States], pause_s: float, recovery_s: float) -> Beginning[Played, States]:
@@ -63,7 +67,8 @@ class Beginning(Generic[Played, States]):
             ]
             return bool(np.max(away_K) <= RECOVERED_K)
 
-        rest_s = float(bisect_left(range(math.ceil(self.recovery_s)), 1, key=lambda rest_s: int(recovered(rest_s))))
+        longest_s = math.ceil(self.recovery_s)
+        rest_s = max(self.least_s, float(bisect_left(range(longest_s), 1, key=lambda rest_s: int(recovered(rest_s)))))
         warm, cold = ([plant.rested(play, state, rest_s) for play in plays] for state in self.left)
         joined = (
             plant.bound(plays, pause_s, [*steady, *states], side) for states, side in ((warm, True), (cold, False))

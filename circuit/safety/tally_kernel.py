@@ -111,11 +111,12 @@ def fill_rate(time_s, skin, out):
 
 @compiled
 def fill_warmer(time_s, display, above_C, out):
-    """Fill `out` (rows,) with the time in s for which the display has been warmer than a temperature."""
+    """Fill `out` (rows,) with the time in s for which the display, linear between rows, has been warmer than that."""
     out[0] = 0.0
     for k in range(display.size - 1):
-        over = 0.5 * (display[k + 1] + display[k]) > above_C
-        out[k + 1] = out[k] + (time_s[k + 1] - time_s[k] if over else 0.0)
+        low, high = min(display[k], display[k + 1]), max(display[k], display[k + 1])
+        share = 0.0 if high <= above_C else (high - above_C) / max(high - low, high - above_C)
+        out[k + 1] = out[k] + share * (time_s[k + 1] - time_s[k])
 
 
 @compiled

@@ -70,7 +70,6 @@ def unit(case: FailedStatement) -> Finding | None:
     kind = kinds[0]
     if case.where in ("icon", "repeat") and case.first == "return":
         kind = "rate"
-    touching = bad.start == number.end
     if re.fullmatch(r"[0-9]{3}", bad.text) and re.fullmatch(r"[+\-−]?[0-9]{1,3}", number.text):
         what = f'there is a space within the number "{number.text} {bad.text}"'
         cure = Patch(number.end, bad.start, "")
@@ -107,8 +106,7 @@ def unit(case: FailedStatement) -> Finding | None:
         cure = Patch(number.start, bad.end, size)
         return at(bad, "E103", f'"{short(bad.text)}" is not a unit', help, cure)
     close = nearest_unit(bad.text, kind)
-    pad = "" if touching or bad.start > number.end else " "
-    cures = [swap(bad, pad + close)] if close else []
+    cures = [swap(bad, close)] if close else []
     known = ", ".join(UNITS[kind])
     return at(bad, "E103", f'"{short(bad.text)}" is not a unit', f"{KIND_WORDS[kind]} is in one of: {known}", *cures)
 

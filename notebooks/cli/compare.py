@@ -203,7 +203,7 @@ def _equally_long(icons: tuple[Icon, Icon], rigs: tuple[Rig, Rig]) -> list[Trace
 
 def _tables(names: tuple[str, str], icon: str | None, theirs: dict[str, str], shift: bool) -> Comparison:
     """Compare the curves of two files, the second shifted in time where that is asked."""
-    first, second = (read_curves(path, icon, theirs) for path in names)
+    first, second = (read_curves(_predicted(path), icon, theirs) for path in names)
     for curves in (first, second):
         for said in curves.notes:
             note(f"note: {curves.name}: {said}")
@@ -211,6 +211,15 @@ def _tables(names: tuple[str, str], icon: str | None, theirs: dict[str, str], sh
     if shift:
         second, said = _shifted(first, second)
     return Comparison("", align(first, second), after=said)
+
+
+def _predicted(path: str) -> str:
+    """Return the predicted display of a drive of set-points, which is exported beside it; else the file itself."""
+    beside = Path(path).with_suffix(".predicted.csv")
+    if not beside.exists() or Path(path).suffix != ".csv":
+        return path
+    note(f"{path} holds set-points; what they are predicted to do is compared, {beside.name}")
+    return str(beside)
 
 
 def _shifted(first: Curves, second: Curves) -> tuple[Curves, str]:

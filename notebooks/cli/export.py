@@ -60,7 +60,7 @@ def export_command(
     """Export drive files for hardware, each with a sidecar that describes it and its predicted effects.
 
     Every icon is simulated as the device delivers it. An icon that is unsafe, not reached, or loses too much on the
-    device is refused with the reason; then nothing is written, and the exit code is 3.
+    device is refused with the reason, as is one that cannot be judged; then nothing is written, and the exit code is 3.
 
     --verify DIR checks an exported folder; the exit code is 1 if its files do not belong together.
     """
@@ -81,6 +81,7 @@ def export_command(
     from thermicon.circuit import export
     from thermicon.circuit.delivery.formats import load_format
     from thermicon.circuit.delivery.pack import check_names
+    from thermicon.circuit.safety.playmap import UnjudgedError
 
     form, whole = load_format(to), read_set([file])
     check_export_folder(folder, force, REPLACED)
@@ -90,11 +91,16 @@ def export_command(
     chosen = pick(whole, icon)
     check_names([one.name for one in chosen], form)
     warned: list[str] = []
-    with progress_bar("simulating", "judging all together") as progress:
-        felt = partial(felt_in, rest=others(whole, chosen), warn=warned.append, tail_s=tail)
-        ready = export(
-            chosen, where, device, form, tail_s=tail, pause_s=pause, force=force, felt=felt, step=progress
-        )  # fmt: skip
+    try:
+        with progress_bar("simulating", "judging all together") as progress:
+            felt = partial(felt_in, rest=others(whole, chosen), warn=warned.append, tail_s=tail)
+            ready = export(
+                chosen, where, device, form, tail_s=tail, pause_s=pause, force=force, felt=felt, step=progress
+            )  # fmt: skip
+    except UnjudgedError as problem:
+        note(f"refused: {problem}", always=True)
+        note("nothing was written", always=True)
+        raise typer.Exit(REFUSED) from None
     for warning in warned:
         note(f"warning: {warning}")
     if refused(ready):

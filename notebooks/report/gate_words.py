@@ -44,8 +44,8 @@ def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
     if not gates:
         return []
     again = "repeated plays" + (", in any order" if len(gates) > 1 else "")
-    stuck = stuck_text(gates)
-    first = [] if stuck is None else [("a driver stuck at its limit", stuck)]
+    stuck = [text for text in (stuck_text(gates), stuck_fast_text(gates)) if text is not None]
+    first = [("a driver stuck at its limit", text) for text in stuck]
     return [*first, (again, repeated_text(gates)), ("your hardware must provide", demands_text(gates))]
 
 
@@ -87,8 +87,21 @@ def stuck_text(gates: Sequence[Named]) -> str | None:
     return f"{stuck[0].to_dict()['text']}, and no cut-off is quick enough{whose}; use {'; or '.join(cures)}"
 
 
+def stuck_fast_text(gates: Sequence[Named]) -> str | None:
+    """The effect of a stuck driver where icons need a current that moves the skin too fast; None where none does."""
+    from thermicon.circuit.safety.words import fault_cure
+
+    faults = [fault for _, gate in gates for fault in gate.demands.faults if fault.kind == "stuck fast"]
+    fast = next((fault for fault in faults if not fault.values["kept"]), None)
+    if fast is None:
+        return None
+    return f"{fast.to_dict()['text']}, and the icons need the current that does it; use {fault_cure(fast)}"
+
+
 def demands_text(gates: Sequence[Named]) -> str:
     """Demands on the hardware for all icons: of each the strictest."""
+    from thermicon.circuit.safety.demands import Demands
+
     every = [(name, gate.demands) for name, gate in gates]
     cut = [one.cut_off_display_C for _, one in every]
     low, high = max(one.low for one in cut), min(one.high for one in cut)
@@ -100,12 +113,17 @@ def demands_text(gates: Sequence[Named]) -> str:
         parts = [f"a current that cannot hang{whose}, for which no watchdog is quick enough"]
     loop = every[0][1].loop  # of set-points: one for all icons
     sensor = "the measured display" if loop is None else "a second sensor of the display"
-    quick = f"within {within:g} s" if within >= QUICKEST_S else "(too slow for a driver stuck at its limit)"
-    parts.append(f"cut-off outside {number(low, 1)} … {number(high, 1)} °C on {sensor} {quick}")
+    if within >= QUICKEST_S:
+        parts.append(f"cut-off outside {number(low, 1)} … {number(high, 1)} °C on {sensor} within {within:g} s")
+    held = Demands.strictest([one for _, one in every]).held_cut_off_display_C
+    if held is not None and within >= QUICKEST_S:
+        outside = f"{number(held.low, 1)} … {number(held.high, 1)} °C"
+        parts.append(f"and where it is outside {outside} for longer than {held.longer_than_s:g} s with current")
     limits = [one.current_limit_A for _, one in every if one.current_limit_A is not None]
     if limits:
         least, most = max(low for low, _ in limits), min(high for _, high in limits)
-        parts.append(f"a controller limited to {signed(least, 'g')} … {most:g} A")
+        which = "driver" if loop is None else "controller"
+        parts.append(f"a {which} limited to {signed(least, 'g')} … {most:g} A by itself")
     if loop is not None:
         (kp, most_kp), (ki, most_ki), set_to = loop.kp_A_per_K, loop.ki_A_per_Ks, loop.played
         parts.append(

@@ -21,7 +21,7 @@ from .build import FELT, UNFELT, Plan, levels_K, plays_of
 from .schedule import Pace, events_description, json_bytes, planned_events, planned_plays, table
 from .study_file import labels_of
 
-SCRIPTS = ("run_study.py", "study_bench.py", "study_questplus.py")
+SCRIPTS = ("run_study.py", "study_answers.py", "study_bench.py", "study_simulated.py", "study_questplus.py")
 """The script and what it imports; the last one only for a threshold."""
 
 CONDITIONS = ("participant", "trial", "block", "icon", "drive_file", "sidecar_file", "duration_s", "marker")

@@ -10,6 +10,7 @@ import numpy as np
 
 from thermicon.circuit import Device, Export, Rig, Session, SessionPlan, export, play_session, simulate_current
 from thermicon.circuit.safety.exposure import cem43_min
+from thermicon.circuit.safety.playmap import UnjudgedError
 from thermicon.circuit.safety.sessionplay import WorstCase, drive_of, worst_case_of
 from thermicon.icons import Icon
 from thermicon.icons.model.arguments import advised
@@ -74,7 +75,10 @@ def judge_drives(
     stimuli, timing = study.stimuli, study.timing
 
     def prepared(pause_s: float) -> Export:
-        return export(icons, rig, device, stimuli.format, pause_s=pause_s, felt=felt_in, step=step)
+        try:
+            return export(icons, rig, device, stimuli.format, pause_s=pause_s, felt=felt_in, step=step)
+        except UnjudgedError as problem:
+            raise StudyRefused([str(problem)]) from None
 
     ready = prepared(gap.gap_s)
     if timing.gap_s is None:

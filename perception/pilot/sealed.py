@@ -66,10 +66,10 @@ def read_sealed(path: str | Path, icons: IconSet, rig: Rig) -> SealedPrediction:
         held = json.loads(data)
         version, digests, named = str(held["thermicon"]), dict(held["sha256"]), held["confusion"]
         labels, confusion = tuple(named["labels"]), np.array(named["probability"], dtype=np.float64)
-    except (ValueError, KeyError, TypeError, RecursionError) as wrong:
+        newest, own = ([int(part) for part in re.findall(r"\d+", text)[:3]] for text in (version, own_version()))
+    except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as wrong:
         why = f"it has no {wrong}" if isinstance(wrong, KeyError) else quoted(str(wrong))
         raise SealedError(f"{path}: not a {WHAT}: {why}; {again}") from None
-    newest, own = ([int(part) for part in re.findall(r"\d+", text)[:3]] for text in (version, own_version()))
     if own and newest > own:
         raise SealedError(f"{path}: written by thermicon {version}, and this is {own_version()}; update to open it")
     if labels != tuple(icon.name for icon in icons):

@@ -1,4 +1,4 @@
-"""A substitute for nidaqmx that records its output at the pace of a given clock."""
+"""A substitute for nidaqmx that keeps the driver's rules and records its output at the pace of a given clock."""
 
 from __future__ import annotations
 
@@ -6,38 +6,116 @@ import types
 from collections.abc import Callable
 from typing import Any
 
+RESERVED, OUTSIDE, NO_TASK, NO_CHANNEL = -50103, -200077, -200088, -200478
+
+
+class DaqError(Exception):
+    """An error of the driver, with its number."""
+
+    def __init__(self, code: int, text: str) -> None:
+        super().__init__(f"{text}\n\nStatus Code: {code}")
+        self.error_code = code
+
+
+class Task:
+    """A task of the driver.
+
+    Rules, by the source of nidaqmx-python 1.7.0 (`task/_task.py`, `errors.py`, `constants.py`) and the NI-DAQmx help
+    ("Task State Model", "Reserving resources", `Auto Start` of DAQmx Write):
+
+    - a task that was started reserves its channels until `stop()` or `close()`, also when it is done; a second one that
+      starts on them fails with -50103, and what is forgotten keeps its reservation, since nothing clears it;
+    - `with` closes at its end; a closed task answers -200088 to everything;
+    - a voltage outside `min_val` … `max_val` of its channel fails with -200077, and nothing of the write is put out;
+    - a write starts a task only with `auto_start`; a buffered one needs a sample clock for as many samples;
+    - a channel holds the last voltage that was put out, whatever becomes of the task.
+    """
+
+    def __init__(self, daq: Daq) -> None:
+        self._daq, self._channel, self._ends_s = daq, "", 0.0
+        self._range_V, self._clocked = (-10.0, 10.0), (0.0, 0)
+        self.is_closed = self.is_started = False
+        self.ao_channels = types.SimpleNamespace(add_ao_voltage_chan=self._add)
+        self.timing = types.SimpleNamespace(cfg_samp_clk_timing=self._sample)
+        daq.tasks.append(self)
+
+    def __enter__(self) -> Task:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if not self.is_closed:
+            self.close()
+
+    def _check(self) -> None:
+        if self.is_closed:
+            raise DaqError(NO_TASK, "Task specified is invalid or does not exist.")
+
+    def _add(self, channel: str, min_val: float = -10.0, max_val: float = 10.0) -> None:
+        self._check()
+        self._channel, self._range_V = channel, (min_val, max_val)
+
+    def _sample(self, rate: float, sample_mode: str, samps_per_chan: int) -> None:
+        self._check()
+        assert sample_mode == "finite"
+        assert rate > 0
+        self._clocked = self._daq.rate, self._daq.count = rate, samps_per_chan
+
+    def start(self) -> None:
+        self._check()
+        if not self._channel:
+            raise DaqError(NO_CHANNEL, "The specified operation cannot be performed without channels in the task.")
+        if any(task.is_started and task._channel == self._channel for task in self._daq.tasks if task is not self):
+            raise DaqError(RESERVED, f"The specified resource is reserved: {self._channel}.")
+        self.is_started = True
+
+    def write(self, volts: Any, auto_start: bool = False) -> int:
+        self._check()
+        block = volts if isinstance(volts, list) else [volts]
+        low_V, high_V = self._range_V
+        if not all(low_V <= at_V <= high_V for at_V in block):
+            raise DaqError(OUTSIDE, f"Requested value is not between {low_V} and {high_V} V.")
+        assert isinstance(volts, list) == bool(self._clocked[1]), "a block needs a sample clock, a voltage has none"
+        assert self._clocked[1] in (0, len(block)), "the clock is for another number of samples"
+        if auto_start and not self.is_started:
+            self.start()
+        assert self.is_started, "a write without auto_start puts nothing out"
+        self._daq.out.append(volts)
+        if isinstance(volts, list):
+            self._ends_s = self._daq.ends = self._daq.monotonic() + len(volts) / self._clocked[0]
+        return len(block)
+
+    def is_task_done(self) -> bool:
+        self._check()
+        return self._daq.monotonic() >= self._ends_s
+
+    def stop(self) -> None:
+        self._check()
+        self._daq.stopped += self.is_started and not self.is_task_done()
+        self.is_started = False
+
+    def close(self) -> None:
+        if self.is_started:
+            self.stop()
+        self._check()
+        self.is_closed = True
+
 
 class Daq(types.ModuleType):
-    """The module with its names and the arguments that players use; `out` is what was put out, in order."""
+    """The module; `out` is what was put out, in order, `stopped` how many blocks were ended before their time."""
 
     def __init__(self, monotonic: Callable[[], float]) -> None:
         super().__init__("nidaqmx")
         self.monotonic, self.ends, self.stopped = monotonic, 0.0, 0
         self.AcquisitionType = types.SimpleNamespace(FINITE="finite")
-        self.ao_channels = types.SimpleNamespace(add_ao_voltage_chan=lambda *_, **__: None)
-        self.timing = types.SimpleNamespace(cfg_samp_clk_timing=self.sampled)
+        self.DaqError = DaqError
         self.rate, self.count = 0.0, 0
         self.out: list[Any] = []
+        self.tasks: list[Task] = []
 
-    def Task(self) -> Daq:
-        return self
+    def Task(self) -> Task:
+        return Task(self)
 
-    def __enter__(self) -> Daq:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        return None
-
-    def sampled(self, rate: float, sample_mode: str, samps_per_chan: int) -> None:
-        self.rate, self.count = rate, samps_per_chan
-
-    def write(self, volts: Any, auto_start: bool) -> None:
-        self.out.append(volts)
-        if isinstance(volts, list):
-            self.ends = self.monotonic() + len(volts) / self.rate
-
-    def is_task_done(self) -> bool:
-        return self.monotonic() >= self.ends
-
-    def stop(self) -> None:
-        self.stopped += 1
+    @property
+    def open_tasks(self) -> int:
+        """Tasks that nobody closed."""
+        return sum(not task.is_closed for task in self.tasks)

@@ -11,8 +11,9 @@ from typing import Any
 import pytest
 
 from tests.notebooks.study.conftest import QUICK, write_study
+from thermicon.circuit.safety.playmap import UnjudgedError
 from thermicon.notebooks.messages import progress_bar
-from thermicon.notebooks.study import build
+from thermicon.notebooks.study import build, judging
 from thermicon.notebooks.study.judging import StudyRefused
 
 
@@ -39,6 +40,15 @@ def test_several_steps_on_no_terminal_are_lines(capsys: pytest.CaptureFixture[st
         for step in ((1, 1), (1, 2), (2, 2)):
             advance(*step)
     assert capsys.readouterr().err == "simulating: 1 of 2\nsimulating: 2 of 2; judging …\n"
+
+
+def test_a_study_whose_drives_are_not_judged_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def unjudged(*_: Any, **__: Any) -> Any:
+        raise UnjudgedError("not judged: too long")
+
+    monkeypatch.setattr(judging, "export", unjudged)
+    with pytest.raises(StudyRefused, match=r"^not judged: too long$"):
+        build.make_plan(build.read_materials(write_study(tmp_path, QUICK)), progress_bar, str)
 
 
 def test_a_study_says_its_plan_before_it_is_judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from functools import partial
+from hashlib import sha256
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from thermicon.icons.model.clean_text import clean_line
 
 from ...arrays import Array
 from ...inputs import shipped_text
-from ...safety.demands import Demands
+from ...safety.demands import Demands, HeldCutOff
 from ..delivered_drive import DeliveredDrive
 from .form import (
     PLAYS_SAMPLES,
@@ -35,6 +36,8 @@ A_LINE = 16
 COURSE_S = 0.1
 """A player gets the predicted display so often."""
 CENTI_K = 0.01
+DIGITS = 16
+"""So many hexadecimal digits name an export."""
 SMALLEST, LARGEST = -32768, 32767
 LONGEST_NS, MOST_CODES = 2**32 - 1, 2**32 - 1
 """What the header's unsigned 32-bit numbers hold: a period of 4.29 s."""
@@ -121,25 +124,34 @@ def identifier(name: str) -> str:
 
 
 def player_files(drives: Sequence[Played], demands: Demands) -> dict[str, bytes]:
-    """Return the player for drives of one device, with the numbers that the hardware must keep to."""
+    """Return the player for drives of one device, with the numbers that the hardware must keep to.
+
+    Its digest is of the drives, and of itself after them, with zeros for the digest.
+    """
     first = drives[0].delivery
     down, up = partial(c_float, toward=-math.inf), partial(c_float, toward=math.inf)
     inward = partial(c_float, toward=0.0)
     courses = {identifier(each.delivery.icon.name): course_C(each.delivery, COURSE_S) for each in drives}
-    if first.device.kind.regulated:  # the set-point is what the display is to do
-        courses = dict.fromkeys(courses, np.zeros(0))
     cut, test, loop = demands.cut_off_display_C, demands.test, demands.loop
+    held = demands.held_cut_off_display_C or HeldCutOff(cut.low, cut.high, 0.0)
     gains = loop.played if loop else (0.0, 0.0, 0.0)
     limits_A = demands.current_limit_A or (0.0, 0.0)
     numbers = {
+        "DIGEST": DIGITS * "0",
+        "NAMES": ", ".join(f'"{name}"' for name in courses),
         "CLOSED_LOOP": str(int(first.device.kind.regulated)),
-        "WATCHDOG_S": down(demands.watchdog_s),
+        "WATCHDOG_S": down(demands.watchdog_s or cut.act_within_s),
+        "NEEDS_SENSOR": str(int(first.device.kind.regulated or not demands.watchdog_s)),
         "LOW_C": up(cut.low),
         "HIGH_C": down(cut.high),
+        "HELD_LOW_C": up(held.low),
+        "HELD_HIGH_C": down(held.high),
+        "HELD_S": down(held.longer_than_s),
         "REACT_S": down(cut.act_within_s),
         "REST_S": up(demands.rest_s),
         "PAUSE_S": up(demands.pause_s),
         "TEST_POLARITY": str(int(test is not None)),
+        "OFF_S": up(test.off_before_s if test else 0.0),
         "TEST_COMMAND": inward(command_for(first, test.test_current_A) if test else 0.0),
         "TEST_UNIT": OUTPUT_UNITS[first.device.driven_by],
         "TEST_S": up(test.test_s if test else 0.0),
@@ -152,7 +164,8 @@ def player_files(drives: Sequence[Played], demands: Demands) -> dict[str, bytes]
         "OUTPUT_UNIT": OUTPUT_UNITS[first.device.driven_by],
         "VERDICTS": "\n".join(f"   {played.file}: {played.verdict}." for played in drives),
     }
-    return {PLAYER: filled(PLAYER, numbers)}
+    together = b"".join(write(each.delivery) for each in drives) + filled(PLAYER, numbers)
+    return {PLAYER: filled(PLAYER, {**numbers, "DIGEST": sha256(together).hexdigest()[:DIGITS]})}
 
 
 def filled(template: str, values: Mapping[str, str]) -> bytes:
@@ -181,8 +194,8 @@ def c_float(value: float, toward: float | None = None) -> str:
 
 
 def _course(name: str, levels: Array) -> str:
-    """The predicted display of an icon in hundredths of a degree; a single 0 stands for none."""
-    codes = np.rint(levels / CENTI_K).astype(int).tolist() or [0]
+    """The predicted display of an icon in hundredths of a degree."""
+    codes = np.rint(levels / CENTI_K).astype(int).tolist()
     rows = ",\n".join("    " + ", ".join(map(str, codes[k : k + A_LINE])) for k in range(0, len(codes), A_LINE))
     return f"static const int16_t thermicon_course_{name}[] PROGMEM = {{\n{rows}}};"
 

@@ -55,7 +55,10 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Played:
-    """One drive of an export, its files, and the verdict on repetition; times in s are None where there are none."""
+    """One drive of an export, its files, and the verdict on repetition; times in s are None where there are none.
+
+    `content`: the bytes of the drive file, by which a player knows it again.
+    """
 
     delivery: DeliveredDrive
     file: str
@@ -63,6 +66,7 @@ class Played:
     safety: str = ""
     recovery_s: float | None = None
     shortest_pause_s: float | None = None
+    content: bytes = b""
 
     @property
     def verdict(self) -> str:

@@ -1,17 +1,19 @@
 """PsychoPy: a conditions file with one row per icon, drives, a supervising player."""
 
 import csv
+import hashlib
 import io
 from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
 
-from ...play.guard import Numbers
-from ...play.script import COURSE_EVERY_S, script
+from ...play.script import COURSE_EVERY_S, JudgedDrive, script
+from ...play.watch import UNSUPERVISED_S, Numbers
 from ...safety.demands import Demands
 from ..delivered_drive import DeliveredDrive
 from ..device import Device
+from ..setpoints import Setpoints
 from .c_array import command_for
 from .form import Column, Format, FormatError, Played, course_C, events_in, samples_of
 from .tables import CSV, SERIAL, SETPOINT_CSV, has_voltage, volts_of, write_rows
@@ -96,25 +98,49 @@ def _player(drives: Sequence[Played], demands: Demands) -> bytes:
     elif driven_by == "temperatures":  # a controller takes 0 V for a temperature, so that off is the rest
         on = "as set-points of a temperature controller on an NI analogue output"
         off_V = float(volts_of(device, samples_of(delivery).command[:1])[0])
-    cut = demands.cut_off_display_C
+    cut, held = demands.cut_off_display_C, demands.held_cut_off_display_C
+    within_s = cut.react_within_s or UNSUPERVISED_S
     numbers = Numbers(
         low_C=cut.low,
         high_C=cut.high,
+        react_s=cut.react_within_s,
         look_every_s=0.5 * cut.act_within_s,
-        late_s=min(cut.act_within_s, demands.watchdog_s or cut.act_within_s),
+        late_s=min(within_s, demands.watchdog_s or within_s),
         rest_s=demands.rest_s,
         pause_s=demands.pause_s,
         second_sensor=demands.loop is not None,
+        closed_loop=driven_by != "volts",
     )
-    if demands.test is not None and driven_by == "volts":
+    if held is not None:
+        numbers = numbers._replace(held_low_C=held.low, held_high_C=held.high, held_s=held.longer_than_s)
+    if demands.test is not None:
         numbers = numbers._replace(
             test_polarity=True,
-            test_command=command_for(delivery, demands.test.test_current_A),
+            test_current_A=demands.test.test_current_A,
             test_s=demands.test.test_s,
             test_fall_K=demands.test.display_change_at_least_K,
+            off_before_test_s=demands.test.off_before_s,
         )
-    courses_C = {each.file: course_C(each.delivery, COURSE_EVERY_S).tolist() for each in drives}
-    return script(kind, on, numbers, courses_C, off_V).encode("utf-8")
+    V_per_A = command_for(delivery, 1.0) if driven_by == "volts" else 0.0
+    return script(kind, on, numbers, [_judged(each) for each in drives], off_V, V_per_A).encode("utf-8")
+
+
+def _judged(played: Played) -> JudgedDrive:
+    """A drive as its player knows it again: by its digest and the range of its commands."""
+    delivery = played.delivery
+    if isinstance(delivery.played, Setpoints):
+        commands = delivery.played.level_C
+    elif delivery.device.driven_by == "temperatures" and has_voltage(delivery.device):
+        commands = volts_of(delivery.device, delivery.played.command)
+    else:
+        commands = delivery.played.command
+    beyond = 1e-6 + 1e-9 * float(np.abs(commands).max())  # decimals of the file
+    return JudgedDrive(
+        played.file,
+        hashlib.sha256(played.content).hexdigest(),
+        (float(commands.min()) - beyond, float(commands.max()) + beyond),
+        course_C(delivery, COURSE_EVERY_S).tolist(),
+    )
 
 
 def _column(name: str, k: int) -> str:

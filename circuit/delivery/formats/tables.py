@@ -74,6 +74,14 @@ def write_setpoints(delivery: DeliveredDrive) -> bytes:
     return _written(delivery, setpoint_columns(delivery), times, cells)
 
 
+def write_predicted(delivery: DeliveredDrive) -> bytes:
+    """Return the display that is predicted for set-points, at the times of their rows; shaped ones lie beside it."""
+    times = samples_of(delivery).time_s
+    display_C = np.interp(times, delivery.trace.time_s, delivery.trace.display_C)
+    rows = (f"{time!r},{level:.4f}\n" for time, level in zip(times.tolist(), display_C.tolist(), strict=True))
+    return ("time_s,display_C\n" + "".join(rows)).encode("ascii")
+
+
 def _written(
     delivery: DeliveredDrive, names: Sequence[Column], time_s: Array, cells: Iterable[Sequence[object]]
 ) -> bytes:

@@ -307,7 +307,7 @@ class TestCall:
         assert {path.name: path.read_bytes() for path in folder.iterdir()} == dict(result.files)
         assert list((tmp_path / "new").iterdir()) == [folder]
         assert result.device.name == load_format("setpoint-csv").device
-        assert repr(result).startswith("Export(2 icons on thenar for closed-loop-controller as setpoint-csv: 4 files, ")
+        assert repr(result).startswith("Export(2 icons on thenar for closed-loop-controller as setpoint-csv: 6 files, ")
 
     def test_refusals_are_data_and_nothing_is_written(self, tmp_path: Path) -> None:
         result = export([SIX["warming-step"], HOT], sure_rig(), "dac-16")

@@ -133,7 +133,7 @@ class TestRefusals:
         assert refusal.endswith("; use a slower change, a shorter hold, a smaller or shorter change")
 
     def test_an_unsafe_icon_is_not_told_to_use_more_current(self) -> None:
-        icon = icon_of("cool by 18 °C over 0.1 s; hold for 6 s", baseline=33)
+        icon = icon_of("cool by 24 °C over 0.1 s; hold for 30 s", baseline=33)
         refusals = prepare(icon, SURE, Device.load("dac-16"), CSV).refusals
         assert [refusal.kind for refusal in refusals] == ["unsafe", "unreachable"]
         assert str(refusals[1]).endswith("; use a slower or smaller change")
@@ -165,7 +165,7 @@ class TestFollowedSetPoints:
         assert all("display at the cut-off" in check.scenario for check in found.findings), found.reason
 
     def test_a_step_that_needs_more_current_than_any_loop_may_have_is_refused_with_one_that_is_safe(self) -> None:
-        shape = "step warm by 0.8 °C; hold for 0.06 s; step cool by 0.8 °C; hold for 0.1 s"
+        shape = "step warm by 0.82 °C; hold for 0.06 s; step cool by 0.82 °C; hold for 0.1 s"
         strong = {"kp_A_per_K": 0.5, "ki_A_per_Ks": 0.125}
         rig = RIG.with_(**SMALL, controller=strong, **{"module.cold_plate_J_per_K": 1.5})
         found = worst_case(by_controller(shape, rig))

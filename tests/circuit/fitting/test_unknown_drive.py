@@ -1,11 +1,13 @@
 """Fits with a partly or wholly unknown drive."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, fit
 from thermicon.circuit.fitting.between import noise_sd, one_phase, tells_all, unknown_display
-from thermicon.circuit.fitting.forward import steady_level
+from thermicon.circuit.fitting.forward import predict, steady_level
 from thermicon.circuit.fitting.keys import COMMON, CONTACT, FitError, free_keys
 from thermicon.circuit.fitting.log import Log, LogError
 from thermicon.circuit.fitting.problem import FitProblem
@@ -60,10 +62,11 @@ def test_what_rows_tell_of_a_driver() -> None:
     assert tells_all(time, np.floor(climb / 50), 100.0)  # levels stand still
     for jump, told in ((15.0, False), (25.0, True)):  # beside a jump, steps of a twentieth are steep
         assert tells_all(time, np.floor(0.8 * climb) + jump * (climb > 100), 100.0) is told
-    noise, bend = np.random.default_rng(1).normal(0.0, 0.02, 4000), 3.0 * np.sin(np.arange(4000) / 40)
-    assert noise_sd(bend + noise, 0.0) == pytest.approx(0.02, rel=0.1)
-    assert noise_sd(np.zeros(50), 0.5) == pytest.approx(0.5 / 12**0.5)
-    assert np.median(unknown_display(noise)) == pytest.approx(0.02, rel=0.25)
+    rows = np.arange(4000.0)
+    noise, bend = np.random.default_rng(1).normal(0.0, 0.02, 4000), 3.0 * np.sin(rows / 40)
+    assert noise_sd(rows, bend + noise, 0.0) == pytest.approx(0.02, rel=0.1)
+    assert noise_sd(rows[:50], np.zeros(50), 0.5) == pytest.approx(0.5 / 12**0.5)
+    assert np.median(unknown_display(rows, noise)) == pytest.approx(0.02, rel=0.25)
     steps = np.repeat([0.0, 1.0, 0.5], 100)
     wrong = one_phase(np.arange(300) / 10, steps, 32.0 - 2 * np.clip(np.arange(300) - 100, 0, 50) / 10)
     assert np.abs(wrong).max() == pytest.approx(0.5)
@@ -75,6 +78,21 @@ def test_a_start_is_steady_until_the_drive_moves_by_more_than_noise() -> None:
     assert steady_level(np.r_[0.1, 0.1, 0.12, np.linspace(0.2, 1.0, 60)]) == pytest.approx(0.1)
     noisy = np.r_[np.full(50, 0.1), np.full(50, 0.4)] + random.normal(0.0, 0.01, 100)
     assert steady_level(noisy) == pytest.approx(0.1, abs=0.01)
+    assert steady_level(np.r_[0.1, np.full(60, 0.5)]) == 0.1, "a log whose only step is that to its second row"
+
+
+def test_a_noisy_start_is_simulated_from_its_level_and_not_from_its_first_row(thenar: Rig) -> None:
+    """Of a current and, where only the skin is measured, of a display."""
+    time_s, noise = np.arange(400) / 20.0, np.tile([0.05, -0.05], 200)
+    for column, level, measured in (("current_A", 0.1, "display_C"), ("display_C", 32.0, "skin_C")):
+        drive = np.where(time_s < 10.0, level, level + 0.4)
+        log = {"time_s": time_s, measured: np.linspace(32.0, 31.9, 400)}
+        plain, noisy = (
+            runs_of([Log.of("a.csv", {**log, column: values})], thenar)[0] for values in (drive, drive + noise)
+        )
+        first = [predict(thenar, run).at(measured, np.zeros(1))[0] for run in (plain, noisy)]
+        wrong = predict(thenar, replace(plain, drive=plain.drive + 0.05)).at(measured, np.zeros(1))[0]
+        assert abs(first[1] - first[0]) < 0.2 * abs(wrong - first[0])
 
 
 def test_what_is_unknown_of_a_drive_reaches_all_rows_after_it(fast: Log) -> None:

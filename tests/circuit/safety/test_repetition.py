@@ -17,17 +17,12 @@ from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.gate import Gate, gate_set
 from thermicon.circuit.safety.plant import recovery_s
-from thermicon.circuit.safety.playmap import steady_cycle
 from thermicon.circuit.safety.repeated import PauseError, Repeating, shortest_pause_s
 from thermicon.circuit.safety.tally import HOTTEST_C, WATCHED, Tally
 from thermicon.circuit.solver.batch_inputs import State
 from thermicon.icons import parse
 
 THENAR = Rig.load("thenar")
-CONTROLLED = THENAR.with_(
-    **{"heat_sink.capacity_J_per_K": 60.0, "heat_sink.kp_W_per_K": 8.0, "heat_sink.ki_W_per_Ks": 1.0,
-       "heat_sink.power_limit_W": 9.0}
-)  # fmt: skip
 REST = 0.08
 COOL = Drive([0, 0.5, 2.5, 3.5], [REST, 0.7, REST, REST], held=True)
 WARM = Drive([0, 1.0, 3.0, 4.0], [REST, -0.4, -0.4, REST])
@@ -44,40 +39,30 @@ def few(rig: Rig = THENAR) -> Ensemble:
 
 
 PLAYS = [CurrentPlay(drive, REST) for drive in (COOL, WARM, BOTH)]
-LONG = 20_000
-"""Steps of a play that is a map; where no play is so short, it is simulated again and again."""
 
 
-@pytest.mark.parametrize("most_steps", [LONG, 0])
-def test_a_steady_cycle_is_what_sixty_plays_come_to(most_steps: int) -> None:
-    plant, plain = CurrentPlant.of(few(), most_steps), CurrentPlant.of(few(), 0)
+def simulated(plant: CurrentPlant, play: CurrentPlay, pause_s: float, state: State) -> State:
+    """States after a play and its pause, without the plant's map."""
+    ended = plant.ensemble.end_of(play.drive, state)
+    return ended if pause_s <= 0.0 else plant.ensemble.rest(play.rest_A, ended, pause_s)
+
+
+def test_a_steady_cycle_is_what_sixty_plays_come_to() -> None:
+    plant = CurrentPlant.of(few())
     for play in PLAYS:
-        assert (plant.map(play, 60.0) is None) == (most_steps == 0)
         start = state = plant.rest(play)
         for _ in range(60):
-            state = plain.after(play, 60.0, state)
+            state = simulated(plant, play, 60.0, state)
         assert np.abs(plant.cycle(play, 60.0).nodes_C - state.nodes_C).max() < 5e-3
         assert np.abs(state.nodes_C - start.nodes_C).max() > 0.02, "it is not the rest"
 
 
-def test_a_steady_cycle_on_a_controlled_heat_sink_is_what_sixty_plays_come_to() -> None:
-    plant = CurrentPlant.of(few(CONTROLLED).only([0, 4]))
-    assert plant.map(PLAYS[0], 60.0) is None
-    state = plant.rest(PLAYS[0])
-    steady, settles = steady_cycle(lambda before: plant.after(PLAYS[0], 60.0, before), state)
-    for _ in range(60):
-        state = plant.after(PLAYS[0], 60.0, state)
-    assert settles.all()
-    assert np.abs(steady.nodes_C - state.nodes_C).max() < 5e-3
-    assert np.abs(steady.sink[:, 0] - state.sink[:, 0]).max() < 5e-3
-
-
 def test_short_plays_without_a_pause_still_have_their_cycle() -> None:
     """A second forgets little: a thousand plays are needed, and a few would not tell."""
-    plant, plain = CurrentPlant.of(few()), CurrentPlant.of(few(), 0)
+    plant = CurrentPlant.of(few())
     steady = plant.cycle(PLAYS[2], 0.0)
     assert steady.nodes_C.max() < HOTTEST_C, "each corner has one"
-    again = plain.after(PLAYS[2], 0.0, steady)
+    again = simulated(plant, PLAYS[2], 0.0, steady)
     assert np.abs(again.nodes_C - steady.nodes_C).max() < 1e-6
 
 
@@ -86,9 +71,9 @@ def test_what_heats_without_end_has_no_cycle() -> None:
     assert (plant.cycle(play, 0.0).nodes_C[:, :-1] == HOTTEST_C).all()
 
 
-@pytest.mark.parametrize(("pause_s", "most_steps", "near_K"), [(0.0, LONG, 15.0), (3.0, LONG, 6.0), (20.0, 0, 2.0)])
-def test_bounds_enclose_thirty_plays_in_any_order(pause_s: float, most_steps: int, near_K: float) -> None:
-    plant, plain = CurrentPlant.of(few(), most_steps), CurrentPlant.of(few(), 0)
+@pytest.mark.parametrize(("pause_s", "near_K"), [(0.0, 15.0), (3.0, 6.0), (20.0, 2.0)])
+def test_bounds_enclose_thirty_plays_in_any_order(pause_s: float, near_K: float) -> None:
+    plant = CurrentPlant.of(few())
     steady, start = [plant.cycle(play, pause_s) for play in PLAYS], plant.rest(PLAYS[0])
     warm = plant.bound(PLAYS, pause_s, steady, warm=True).nodes_C
     cold = plant.bound(PLAYS, pause_s, steady, warm=False).nodes_C
@@ -96,20 +81,20 @@ def test_bounds_enclose_thirty_plays_in_any_order(pause_s: float, most_steps: in
     for _ in range(3):
         state = start
         for k in rng.integers(0, 3, 30):
-            state = plain.after(PLAYS[k], pause_s, state)
+            state = simulated(plant, PLAYS[k], pause_s, state)
             assert (state.nodes_C <= warm + 1e-6).all()
             assert (state.nodes_C >= cold - 1e-6).all()
             nearest = min(nearest, float((warm - state.nodes_C)[:, 1].min()))
     assert nearest < near_K, "bounds are of use: the display comes near them"
     for play in PLAYS:  # what no order can pass, since no play leads out
-        assert (plain.after(play, pause_s, State(warm, start.sink)).nodes_C <= warm + 1e-5).all()
-        assert (plain.after(play, pause_s, State(cold, start.sink)).nodes_C >= cold - 1e-5).all()
+        assert (simulated(plant, play, pause_s, State(warm, start.sink)).nodes_C <= warm + 1e-5).all()
+        assert (simulated(plant, play, pause_s, State(cold, start.sink)).nodes_C >= cold - 1e-5).all()
 
 
 def test_bounds_of_a_set_hold_where_one_drive_warms_the_sink_and_another_the_display() -> None:
     """A passive sink that coolings have warmed makes the next warming warmer than any number of warmings."""
     sink = {"temperature_C": 28.0, "capacity_J_per_K": 40.0, "air_resistance_K_per_W": 0.5}
-    plant = CurrentPlant.of(few(THENAR.with_(**{"skin.elements": [1] * 5}, heat_sink=sink)).only([0, 3]), 0)
+    plant = CurrentPlant.of(few(THENAR.with_(**{"skin.elements": [1] * 5}, heat_sink=sink)).only([0, 3]))
     cool, warm = (CurrentPlay(Drive([0, 0.5, 2.0, 4.0], [REST, amps, REST, REST], held=True), REST) for amps in (1, -1))
     steady = [plant.cycle(play, 20.0) for play in (cool, warm)]
     most, least = (plant.bound([cool, warm], 20.0, steady, side).nodes_C for side in (True, False))
@@ -117,7 +102,7 @@ def test_bounds_of_a_set_hold_where_one_drive_warms_the_sink_and_another_the_dis
     for order in ([0] * 29 + [1], [1] * 29 + [0], *rng.integers(0, 2, (3, 30))):
         state = plant.rest(cool)
         for k in order:
-            state = plant.after((cool, warm)[k], 20.0, state)
+            state = simulated(plant, (cool, warm)[k], 20.0, state)
             assert (state.nodes_C <= most + 1e-6).all()
             assert (state.nodes_C >= least - 1e-6).all()
             beyond = max(beyond, float((state.nodes_C - np.max([one.nodes_C for one in steady], axis=0)).max()))
@@ -232,7 +217,7 @@ def rate_of(tally: Tally) -> float:
 
 
 def test_a_play_that_follows_another_has_the_rates_of_both_played_on() -> None:
-    plant, plain = CurrentPlant.of(few()), CurrentPlant.of(few(), 0)
+    plant = CurrentPlant.of(few())
     steady = [plant.cycle(play, 0.5) for play in PLAYS]
     tallies = plant.following(PLAYS, 0.5, steady, plant.begun_C(PLAYS)[0], THENAR.limits, 0)
     worst = {}
@@ -240,7 +225,7 @@ def test_a_play_that_follows_another_has_the_rates_of_both_played_on() -> None:
         fastest = np.inf
         for other in others:
             for before in (plant.rest(PLAYS[other]), *([steady[other]] if name == "another" else [])):
-                state = plain.after(PLAYS[other], 0.5, before)
+                state = simulated(plant, PLAYS[other], 0.5, before)
                 for (rows, values), _ in plant.play(PLAYS[0], state):
                     fastest = min(fastest, float((np.diff(values[0]) / np.diff(rows)).min()))
         worst[name] = fastest

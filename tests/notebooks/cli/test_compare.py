@@ -1,5 +1,6 @@
 """``thermicon compare``: rigs, icons, sets, traces or logs in one table with one figure."""
 
+import json
 import re
 from functools import partial
 from pathlib import Path
@@ -9,7 +10,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from tests.circuit.delivery.one_drive import prepare
+from tests.circuit.verdicts import GreenVerdict
 from tests.notebooks.conftest import Cli
+from thermicon.circuit import Device, Rig
+from thermicon.circuit.delivery.formats import load_format
+from thermicon.circuit.delivery.pack import pack
+from thermicon.icons import load_library
 from thermicon.notebooks.files.trace_files import Curves, TraceFileError, align, differences
 from thermicon.perception import rank
 
@@ -99,6 +106,30 @@ def test_a_log_with_a_clock_of_its_own_is_aligned(cli: Cli, tmp_path: Path) -> N
     assert row(said, "display")[1] == "0.1"
     frame.rename(columns={"display_C": "probe_a_C"}).to_csv(log, index=False)
     assert "no column in both trace.csv and log.csv to align them by" in cli("compare", trace, log, "--align").stderr
+
+
+@pytest.mark.parametrize("form_name", ["setpoint-csv", "psychopy"])
+def test_a_log_is_compared_with_the_predicted_display_and_not_with_set_points(
+    cli: Cli, tmp_path: Path, form_name: str
+) -> None:
+    """Set-points are shaped for a loop, so that the display is where they are not."""
+    icon, form = load_library("six-icons")["double-dip"], load_format(form_name)
+    ready = prepare(icon, Rig.load("thenar"), Device.load("closed-loop-controller"), form, gate=GreenVerdict)
+    for name, content in pack([ready], form).items():
+        (tmp_path / name).write_bytes(content)
+    drive, predicted = tmp_path / "double-dip.csv", tmp_path / "double-dip.predicted.csv"
+    assert json.loads((tmp_path / "double-dip.json").read_text())["set_files"][predicted.name]
+    levels = [float(line.split(",")[1]) for line in drive.read_text().splitlines()[1:]]
+    displays = [float(line.split(",")[1]) for line in predicted.read_text().splitlines()[1:]]
+    assert len(levels) == len(displays)
+    assert max(abs(level - display) for level, display in zip(levels, displays, strict=True)) > 0.3
+    log = tmp_path / "log.csv"
+    log.write_bytes(predicted.read_bytes())
+    done = cli.good("compare", drive, log)
+    assert "holds set-points; what they are predicted to do is compared" in " ".join(done.stderr.split())
+    assert "play alike: no difference in any curve" in " ".join(done.stdout.split())
+    predicted.unlink()
+    assert "alike" not in cli.good("compare", drive, log).stdout
 
 
 def curves(name: str, time: list[float], whole: bool = False, **columns: list[float]) -> Curves:

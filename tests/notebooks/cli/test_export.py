@@ -72,7 +72,7 @@ def test_simulate_replays_an_exported_drive_exactly_when_it_is_held(cli: Cli, tw
 )
 def test_every_format_has_a_device_of_its_own(cli: Cli, two: Path, tmp_path: Path, name: str) -> None:
     said = cli.good("export", two, "--to", name, "-o", tmp_path / "out", *SURE)
-    assert len(names(tmp_path / "out")) == {"psychopy": 6, "c-array": 5}.get(name, 4)
+    assert len(names(tmp_path / "out")) == {"psychopy": 6, "setpoint-csv": 6, "c-array": 5}.get(name, 4)
     open_loop = name not in ("tcs2-serial", "setpoint-csv")
     assert ("open loop: with a module that was not measured" in said.stderr) is open_loop
     if name == "tcs2-serial":
@@ -100,6 +100,18 @@ def test_unsafe_even_when_forced(cli: Cli, tmp_path: Path, cue: str, more: tuple
     assert said.stderr.endswith("nothing was written\n")
     assert "--force exports it" not in said.stderr
     assert not (tmp_path / "out").exists()
+
+
+def test_what_is_too_long_for_its_heat_sink_is_not_judged_even_when_forced(cli: Cli, two: Path) -> None:
+    keys = ("capacity_J_per_K=60", "kp_W_per_K=8", "ki_W_per_Ks=1", "power_limit_W=9")
+    more = [word for key in keys for word in ("--set", f"heat_sink.{key}")]
+    out = two.parent / "out"
+    said = cli("export", two, "--to", "csv", "-o", out, "--force", *more, "--set", "driver.update_Hz=2600")
+    assert (said.exit_code, said.stdout, out.exists()) == (3, "", False)
+    refused, nothing = said.stderr.splitlines()[-2:]
+    assert refused.startswith("refused: not judged: too long: drive 1 of 2 is 8 s in 20,8"), refused
+    assert nothing == "nothing was written"
+    assert not re.search(r"\d °C|NOT SAFE", said.stderr)
 
 
 @pytest.mark.parametrize(

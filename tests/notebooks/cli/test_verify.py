@@ -171,6 +171,18 @@ def test_anything_may_be_in_a_sidecar(content: bytes) -> None:
     assert time.monotonic() - start < 5
 
 
+@pytest.mark.parametrize("demand", ["held_cut_off_display_C", "current_limit_A", None])
+def test_what_an_older_thermicon_exported_is_refused(pair: dict[str, bytes], demand: str | None) -> None:
+    """Its script knows no digest of its drives, no predicted display, and no second cut-off."""
+    demands = json.loads(pair[W + ".json"])["hardware_must_prevent"]
+    fewer = {name: value for name, value in demands.items() if name != demand} if demand else None
+    found = verify({**pair, W + ".json": changed(pair[W + ".json"], hardware_must_prevent=fewer)})
+    assert not found.belongs(W + ".json")
+    assert found.belongs(C + ".json")
+    (old,) = (str(finding) for finding in found.findings if finding.kind == "wrong")
+    assert re.search(rf"is of an older thermicon, which .*\({demand or 'watchdog_s'} is missing\); export again", old)
+
+
 def test_all_well(cli: Cli, out: Path) -> None:
     (out / "README.txt").write_text("mine")
     done = cli.good("export", "--verify", out)

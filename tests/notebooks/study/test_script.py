@@ -15,6 +15,7 @@ from thermicon.perception.pilot.trials_file import read_trials
 
 from .conftest import Runner, rows_of, run_script
 
+ROOT = Path(__file__).parents[3]
 COLUMNS = ["participant", "trial", "presented", "responded", "time_s"]
 
 
@@ -53,10 +54,11 @@ def test_a_simulated_run_writes_answers_and_events(quick: Path, done: Path) -> N
 
 
 def test_the_scripts_need_neither_thermicon_nor_psychopy_to_be_simulated(quick: Path) -> None:
-    for name in ("run_study.py", "study_bench.py"):
+    own = {"study_answers", "study_bench"}
+    for name in ("run_study.py", "study_answers.py", "study_bench.py", "study_simulated.py"):
         lines = (quick / name).read_text(encoding="utf-8").splitlines()
         imported = {line.split()[1].partition(".")[0] for line in lines if line.startswith(("import ", "from "))}
-        assert imported <= sys.stdlib_module_names
+        assert imported <= sys.stdlib_module_names | own
 
 
 def test_pauses_landings_and_breaks_are_kept(quick: Path, done: Path) -> None:
@@ -185,55 +187,120 @@ def test_the_abort_key_ends_at_once_wherever_it_comes(at_s: float, words: str, s
     assert minutes == pytest.approx(at_s / 60.0, abs=0.06)
 
 
-PSYCHOPY = {
+def changed_player(quick: Path, folder: Path, text: str) -> Path:
+    """A copy of the study whose player goes on with some text."""
+    study = Path(shutil.copytree(quick, folder / "study"))
+    with (study / "play_icons.py").open("a", encoding="utf-8") as file:
+        file.write(text)
+    return study
+
+
+KEEPS = """
+_kept = [0.0]
+def keep():
+    _kept.append(time.monotonic())
+    if time.monotonic() - _kept[-2] > 0.02:
+        with open("GAPS", "a") as file:
+            file.write(f"{time.monotonic() - _kept[-2]}\\n")
+"""
+
+
+def test_the_device_is_kept_awake_whenever_no_play_does_it(quick: Path, tmp_path: Path) -> None:
+    """A watchdog of a second: the loop that reads the keys feeds it; a rest and ten plays of 3 s feed it themselves."""
+    study = changed_player(quick, tmp_path, KEEPS.replace("GAPS", str(tmp_path / "gaps")))
+    assert run_script(study, tmp_path, "--participant", "A", "--simulate").returncode == 0
+    gaps_s = [float(line) for line in (tmp_path / "gaps").read_text(encoding="utf-8").split()]
+    assert len(gaps_s) == 11 and all(gap_s == pytest.approx(3.01, abs=0.1) for gap_s in gaps_s[1:])
+
+
+@pytest.mark.parametrize(
+    ("text", "ending"),
+    [
+        (
+            "def keep():\n    if time.monotonic() > 60: raise Stopped('the display is at 60 C')",
+            "SWITCHED OFF: the display",
+        ),
+        ("_off = None", "NOT SWITCHED OFF, do that by hand at once ('NoneType' object is not callable): 'NoneType'"),
+        ("import nidaqmx\nnidaqmx.Task()", "NOT SWITCHED OFF, do that by hand at once (tasks that nobody closed: 1): "),
+    ],
+    ids=["stopped between plays", "off fails", "a task stays open"],
+)
+def test_what_goes_wrong_is_the_ending_and_never_done(text: str, ending: str, quick: Path, tmp_path: Path) -> None:
+    ran = run_script(changed_player(quick, tmp_path, f"\n{text}\n"), tmp_path, "--participant", "A", "--simulate")
+    assert (ran.returncode, ran.stderr) == (3, "")
+    assert f"A: {ending}" in ran.stdout and "done" not in ran.stdout
+
+
+STAND_INS = {
     "psychopy/__init__.py": "",
-    "psychopy/visual.py": """
+    "psychopy/visual.py": '''
+"""By psychopy/visual/window.py: what was drawn is shown by flip(), which waits for the next frame (waitBlanking) and
+leaves the buffer empty; a window that was closed shows nothing more; its context belongs to the thread that made it."""
+
+import threading
+import time
+
 class Window:
     def __init__(self, size=(800, 600), pos=None, color=(0, 0, 0), fullscr=None, units="norm"):
-        self.open = True
+        self.drawn, self.thread, self.open = [], threading.current_thread(), True
+    def check(self):
+        assert self.open, "this window is closed"
+        assert threading.current_thread() is self.thread, "another thread made this window"
     def flip(self):
-        import time
-        time.sleep(0.01)
+        self.check()
+        time.sleep(1 / 60 - time.monotonic() % (1 / 60))
+        print(*self.drawn, file=open(__file__ + ".log", "a"))
+        self.drawn = []
     def close(self):
+        self.check()
         self.open = False
+
 class TextStim:
     def __init__(self, win, text="Hello", height=None, wrapWidth=None):
-        self.text = text
+        self.win, self.text = win, text
     def draw(self):
-        print(self.text.replace("\\n", "|"), file=open(LOG, "a"))
-LOG = __file__ + ".log"
-""",
-    "psychopy/event.py": """
+        self.win.check()
+        self.win.drawn.append(self.text.replace("\\n", "|"))
+''',
+    "psychopy/event.py": '''
+"""By psychopy/event.py: getKeys() gives the names of the keys pressed since it was last called, each once."""
+
 import time
-begun = time.monotonic()
+
+last = [time.monotonic()]
+
 def getKeys(keyList=None, modifiers=False, timeStamped=False):
-    pressed = ["space", "1"] if int((time.monotonic() - begun) * 100) % 10 == 0 else []
-    return pressed
-""",
-    "nidaqmx/__init__.py": """
+    """A person who presses both keys ten times a second."""
+    before, last[0] = last[0], time.monotonic()
+    return ["space", "1"] * (int(10 * last[0]) - int(10 * before))
+''',
+    "nidaqmx/__init__.py": '''
+"""The stand-in that keeps the rules of the driver; at the end it notes what was put out, and the tasks left open."""
+
+import atexit
+import sys
 import time
-class Task:
-    def __enter__(self): return self
-    def __exit__(self, *_): return None
-    class ao_channels:
-        add_ao_voltage_chan = staticmethod(lambda *_, **__: None)
-    class timing:
-        cfg_samp_clk_timing = staticmethod(lambda *_, **__: None)
-    def write(self, volts, auto_start=False):
-        self.ends = time.monotonic() + 0.2
-        print("put", len(volts) if isinstance(volts, list) else volts, file=open(LOG, "a"))
-    def is_task_done(self): return time.monotonic() >= self.ends
-    def stop(self): pass
-LOG = __file__ + ".log"
-""",
-    "nidaqmx/constants.py": "class AcquisitionType:\n    FINITE = 1\n",
+
+from tests.circuit.daq import Daq
+
+device = Daq(time.monotonic)
+
+def note(path=__file__ + ".log"):
+    with open(path, "w") as file:
+        for row in device.out:
+            print("put", len(row) if isinstance(row, list) else row, file=file)
+        print("open", device.open_tasks, file=file)
+
+atexit.register(note)
+sys.modules["nidaqmx"] = sys.modules["nidaqmx.constants"] = device
+''',
 }
-"""Stand-ins with the names and arguments of PsychoPy and nidaqmx that the script uses."""
+"""Stand-ins with the names, arguments and rules of PsychoPy and nidaqmx, as far as the script uses them."""
 
 
 @pytest.mark.slow
 def test_with_psychopy_and_a_device_it_runs_in_real_time(quick: Path, tmp_path: Path) -> None:
-    for name, text in PSYCHOPY.items():
+    for name, text in STAND_INS.items():
         (tmp_path / "stubs" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "stubs" / name).write_text(text, encoding="utf-8")
     folder = tmp_path / "study"
@@ -249,13 +316,13 @@ def test_with_psychopy_and_a_device_it_runs_in_real_time(quick: Path, tmp_path: 
     done = subprocess.run(
         [sys.executable, str(folder / "run_study.py"), "--participant", "A", "--window"],
         capture_output=True, encoding="utf-8", timeout=100, check=False,
-        env={**os.environ, "PYTHONPATH": str(tmp_path / "stubs")},
+        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path / "stubs"), str(ROOT)])},
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, "")
     assert len(answers(folder / "data")) == 8
     put = (tmp_path / "stubs" / "nidaqmx" / "__init__.py.log").read_text(encoding="utf-8").split("\n")
     assert sum(line.startswith("put 3") for line in put) == 10, "every drive of about 300 samples, practice included"
-    assert put[-2] == "put 0.0", "the output is off at the end"
+    assert put[-3:] == ["put 0.0", "open 0", ""], "the output is off at the end, and no task is left"
     shown = (tmp_path / "stubs" / "psychopy" / "visual.py.log").read_text(encoding="utf-8")
     for words in ("Place the hand on the display", "Practice is over", "Which pattern was that?||1   a dip|2   a glow"):
         assert words in shown

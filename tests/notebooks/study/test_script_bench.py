@@ -1,7 +1,9 @@
 """The display of a study's script on simulated hardware: play without blocking, guards, stops."""
 
 import importlib
+import itertools
 import sys
+import threading
 import time
 import types
 from pathlib import Path
@@ -52,7 +54,7 @@ def test_a_play_does_not_block_and_abort_switches_off(display: Any, quick: Path)
 def test_the_guard_stops_a_display_that_is_too_warm(display: Any, quick: Path) -> None:
     """The cut-off of the exported player acts in a study too."""
     readings = iter([32.0 + 0.001 * k for k in range(10)] + [60.0 + 0.001 * k for k in range(1000)])
-    display.measured_C = lambda: next(readings)
+    display.own = types.SimpleNamespace(measured_C=lambda: next(readings))
     display.player.TEST_POLARITY = False
     display.play(str(quick / "dip.csv"))
     begun = time.monotonic()
@@ -82,6 +84,145 @@ def test_the_rest_is_held_before_the_first_play(display: Any, quick: Path) -> No
     assert time.monotonic() - begun > 0.05
 
 
+def test_abort_switches_off_while_a_sensor_hangs(display: Any, quick: Path) -> None:
+    """The display is off at once; the thread that waits for the sensor is not waited for before."""
+    reads, hangs, answers = itertools.count(), threading.Event(), threading.Event()
+
+    def measured_C() -> float:
+        if any(isinstance(row, list) for row in display.device.out):
+            hangs.set()
+            answers.wait(10.0)
+        return 32.0 + 0.001 * next(reads)
+
+    display.own, display.player.TEST_POLARITY = types.SimpleNamespace(measured_C=measured_C), False
+    display.play(str(quick / "dip.csv"))
+    assert hangs.wait(10.0), "the icon plays, and the sensor does not answer"
+    escape = threading.Thread(target=display.abort)
+    escape.start()
+    begun = time.monotonic()
+    while display.device.out[-1] != 0.0:
+        assert time.monotonic() - begun < 1.0, "it waited for the thread before"
+        time.sleep(0.01)
+    answers.set()
+    escape.join()
+    with pytest.raises(RuntimeError):
+        display.keep()
+    assert display.device.out[-1] == 0.0
+
+
+class StandInPlayer:
+    """A player for a controller, as the functions of play_icons.py are; `calls` are those that were made."""
+
+    POLARITY_SEEN = ""
+
+    def __init__(self) -> None:
+        self.calls: list[Any] = []
+        self.stopped: str | None = None
+        self.playing = threading.Event()
+
+    def rest(
+        self, drive_file: str, send: Any, off: Any, measured_C: Any = None, second_C: Any = None, test: Any = None,
+        feed: Any = None,
+    ) -> None:  # fmt: skip
+        self.calls.append((drive_file, send, off, measured_C, second_C, test, feed))
+
+    def play(self, drive_file: str, send: Any, off: Any) -> None:
+        self.calls.append((drive_file, send, off))
+        self.playing.wait(5.0)
+
+    def keep(self) -> None:
+        self.calls.append("keep")
+        if self.stopped:
+            raise RuntimeError(self.stopped)
+
+    def abort(self) -> None:
+        self.calls.append("abort")
+        if self.stopped:
+            raise RuntimeError(self.stopped)
+
+
+@pytest.fixture
+def controller(quick: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """A controller with a bench that offers everything, on a stand-in for the player."""
+    bench, player = bench_of(quick, monkeypatch), StandInPlayer()
+    monkeypatch.setattr(bench, "load", lambda path, name: player)
+    names = ("send", "measured_C", "second_C", "test", "feed")
+    own = types.SimpleNamespace(
+        off=lambda: player.calls.append("off"),
+        polarity_seen="MK, 3 March, at -0.5 A",
+        **{name: f"the bench's {name}" for name in names},
+    )
+    return bench.Display("send", own)
+
+
+def test_the_player_gets_what_the_bench_offers_and_it_takes(controller: Any) -> None:
+    player, own = controller.player, controller.own
+    assert player.POLARITY_SEEN == "MK, 3 March, at -0.5 A"
+    controller.rest("dip.csv")
+    controller._thread.join()
+    controller.play("dip.csv")
+    player.playing.set()
+    controller._thread.join()
+    assert not controller.busy
+    sensors = "the bench's measured_C", "the bench's second_C", "the bench's test", "the bench's feed"
+    assert player.calls == [("dip.csv", own.send, own.off, *sensors), ("dip.csv", own.send, own.off)]
+    del own.feed, own.test
+    controller.rest("dip.csv")
+    controller._thread.join()
+    assert player.calls[-1] == ("dip.csv", own.send, own.off, *sensors[:2], None, None)
+
+
+def test_between_plays_the_player_keeps_the_device_awake_and_while_one_goes_on_it_does_so_itself(
+    controller: Any,
+) -> None:
+    player = controller.player
+    controller.keep()
+    assert player.calls == ["keep"]
+    controller.play("dip.csv")
+    controller.keep()
+    assert player.calls[1:] in ([], [("dip.csv", controller.own.send, controller.own.off)])
+    player.playing.set()
+    controller._thread.join()
+    controller.keep()
+    assert player.calls[-1] == "keep"
+    player.stopped = "the display is at 60 degrees C"
+    with pytest.raises(RuntimeError, match="the display is at 60 degrees C"):
+        controller.keep()
+
+
+def test_commands_are_sent_to_a_thermode_while_the_keys_are_read(quick: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A line that takes its time, or hangs, must not keep the abort key from acting."""
+    bench, sends, calls = bench_of(quick, monkeypatch), threading.Event(), []
+
+    def prepare(port: str, drive_file: str) -> None:
+        sends.wait(5.0)
+        calls.append(("prepare", port, drive_file))
+
+    def rest(port: str, measured_C: object = None) -> None:
+        calls.append(("rest", port, measured_C))
+
+    player = types.SimpleNamespace(prepare=prepare, rest=rest, connect=lambda: player.PORT, keep=lambda: None)
+    monkeypatch.setattr(bench, "load", lambda path, name: player)
+    thermode = bench.Display("tcs2", types.SimpleNamespace(measured_C="sensor", second_C="another"), port="COM7")
+    thermode.rest("dip.txt")
+    assert thermode.busy and not calls
+    sends.set()
+    thermode._thread.join()
+    thermode.prepare("glow.txt")
+    thermode._thread.join()
+    assert calls == [("prepare", "COM7", "dip.txt"), ("rest", "COM7", "sensor"), ("prepare", "COM7", "glow.txt")]
+    del player.keep
+    with pytest.raises(SystemExit, match=r"play_icons\.py is older than this script: export the study again"):
+        bench.Display("tcs2")
+
+
+def test_abort_switches_off_although_the_player_cannot(controller: Any) -> None:
+    controller.player.stopped = "the line is lost"
+    with pytest.raises(RuntimeError, match="the line is lost"):
+        controller.abort()
+    assert controller.player.calls == ["abort", "off"]
+
+
 def test_other_devices_have_their_functions(quick: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     bench = bench_of(quick, monkeypatch)
     with pytest.raises(SystemExit, match=r"needs --bench FILE\.py with the functions send\(display_C\) and off\(\)"):
@@ -94,3 +235,41 @@ def test_other_devices_have_their_functions(quick: Path, monkeypatch: pytest.Mon
     thermode.port = types.SimpleNamespace(write=done.append)
     thermode.abort()
     assert done == ["off", b"A"]
+
+
+def test_the_stand_in_for_an_ni_card_keeps_the_rules_of_the_driver(
+    quick: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench_of(quick, monkeypatch)
+    monkeypatch.delitem(sys.modules, "study_simulated", raising=False)
+    simulated = importlib.import_module("study_simulated")
+    clock, out = simulated.SimulatedClock([]), []
+    driver = simulated.SimulatedNi(clock, out)
+
+    def task(channel: str = "Dev1/ao0") -> Any:
+        made = driver.Task()
+        made.ao_channels.add_ao_voltage_chan(channel, min_val=-1.0, max_val=1.0)
+        return made
+
+    with task() as block:
+        block.timing.cfg_samp_clk_timing(10.0, sample_mode="finite", samps_per_chan=3)
+        block.write([0.1, 0.2, 0.3], auto_start=True)
+        assert not block.is_task_done()
+        clock.sleep(0.3)
+        assert block.is_task_done()
+        with pytest.raises(driver.DaqError, match="-50103: the specified resource is reserved"), task() as second:
+            second.write(0.0, auto_start=True)
+        with task("Dev1/ao1") as other:
+            other.write(1.0, auto_start=True)
+        block.stop()
+        with task() as second:
+            second.write(-1.0, auto_start=True)
+            with pytest.raises(driver.DaqError, match=r"-200077: a voltage is outside -1\.0 to 1\.0 V"):
+                second.write(-1.01, auto_start=True)
+        with pytest.raises(AssertionError, match="before start"), task() as second:
+            second.write(0.0)
+    assert (out, driver.tasks) == ([3, 1.0, -1.0], [])
+    task().write(0.5, auto_start=True)
+    assert len(driver.tasks) == 1
+    with pytest.raises(driver.DaqError, match="-50103"):
+        task().write(0.0, auto_start=True)

@@ -57,6 +57,8 @@ def test_skin_alone_confuses_what_is_alike_at_the_skin(rig: Rig) -> None:
 
 CHANGES: dict[str, Callable[[dict[str, Any]], object]] = {
     "version": lambda held: held.update(thermicon="99.1"),
+    "digits": lambda held: held.update(thermicon="1" * 4301),
+    "large": lambda held: held["confusion"]["probability"][1].__setitem__(0, 10**400),
     "earlier": lambda held: held.pop("sha256"),
     "names": lambda held: held["confusion"]["labels"].reverse(),
     "rows": lambda held: held["confusion"]["probability"][0].reverse() or held["confusion"]["probability"].pop(),

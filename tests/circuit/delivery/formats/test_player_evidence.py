@@ -4,132 +4,20 @@
 clock is judged too.
 """
 
-import csv
-import io
 import math
 import os
-import sys
-import types
 from collections.abc import Callable
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from tests.circuit.daq import Daq
 from tests.circuit.delivery.formats.test_c_player import FROZEN, LATE, LOST, STANDS, STOPPED, build, run
-from tests.circuit.delivery.one_drive import prepare
-from tests.circuit.verdicts import LOOP, GreenVerdict
-from thermicon.circuit import Device, Rig
-from thermicon.circuit.delivery.formats import load_format
-from thermicon.circuit.delivery.pack import pack
-from thermicon.icons import load_library
+from tests.circuit.delivery.formats.world import LINES, PAUSE_S, REST_S, TICK_S, Sensor, World, exported
 
 pytestmark = pytest.mark.slow
 RUNS = min(500, int(os.environ.get("THERMICON_EVIDENCE", "500"))) // 2
-LINES = {"ni": "ni-analogue-output", "tcs2": "qst-tcs2", "function": "closed-loop-controller"}
-REST_S, PAUSE_S, ICON_S = 30.0, 20.0, 8.0
-TICK_S = 0.016
-
-
-@cache
-def exported(device: str) -> tuple[dict[str, bytes], str, Any]:
-    form, rig = load_format("psychopy"), Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})
-    ready = prepare(load_library("six-icons")["double-dip"], rig, Device.load(device), form, gate=GreenVerdict)
-    return pack([ready], form), form.file_name(ready.delivery), ready.delivery
-
-
-class World:
-    """A computer and a display, as the player of one line meets them; `out` has what was put out by the true time."""
-
-    def __init__(self, line: str, rng: np.random.Generator, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        files, name, self.delivery = exported(LINES[line])
-        self.line, self.rng, self.path, self.script = line, rng, str(folder / name), files["play_icons.py"]
-        Path(self.path).write_bytes(files[name])
-        self.rows = list(csv.DictReader(io.StringIO(files[name].decode()))) if line != "tcs2" else []
-        self.true_s = self.began_s = float(rng.uniform(0, 1e5))
-        self.out: list[tuple[float, Any]] = []
-        self.daq = Daq(lambda: self.true_s)
-        self.daq.out = types.SimpleNamespace(append=self.put)  # type: ignore[assignment]
-        monkeypatch.setitem(sys.modules, "nidaqmx", self.daq)
-        monkeypatch.setitem(sys.modules, "nidaqmx.constants", self.daq)
-        self.port = types.SimpleNamespace(write=self.put)
-        self.clock, self.clock_s = "right", math.inf
-        self.sensor, self.sensor_s, self.stuck_C = "live", math.inf, 32.0
-        self.abort_s, self.quantum_K = math.inf, float(rng.choice([0.0, 0.01, 0.1]))
-        self.start()
-
-    def start(self) -> None:
-        """A new process, on a computer that was mended."""
-        self.clock_s = self.sensor_s = math.inf
-        self.player: dict[str, Any] = {}
-        exec(compile(self.script, "play_icons.py", "exec"), self.player)
-        self.player["time"] = self
-        self.player["TEST_POLARITY"] = False
-
-    def put(self, value: Any) -> None:
-        self.out.append((self.true_s, value))
-        if isinstance(value, list) or value == b"L":
-            self.began_s = self.true_s
-
-    def monotonic(self) -> float:
-        after_s = self.true_s - self.clock_s
-        if after_s >= 0:
-            faults = {"no number": math.nan, "back": self.true_s - 7.0, "stands": self.clock_s, "right": self.true_s}
-            return faults.get(self.clock, math.floor(self.true_s / TICK_S) * TICK_S)
-        return math.floor(self.true_s / TICK_S) * TICK_S if self.clock == "coarse" else self.true_s
-
-    def sleep(self, seconds: float) -> None:
-        self.true_s += seconds + float(self.rng.exponential(2e-4))
-        if self.true_s > self.abort_s:
-            self.abort_s = math.inf
-            self.player["abort"]()
-
-    def measured(self) -> float:
-        trace, bad = self.delivery.trace, self.true_s >= self.sensor_s
-        now_C = float(np.interp(self.true_s - self.began_s, trace.time_s, trace.display_C))
-        if self.line == "function":
-            now_C = next((float(level) for _, level in reversed(self.out) if level != "off"), 32.0)
-        now_C = round(now_C / self.quantum_K) * self.quantum_K if self.quantum_K else now_C + self.rng.normal(0, 1e-3)
-        if not bad:
-            self.stuck_C = now_C
-        return (
-            {"frozen": self.stuck_C, "no number": math.nan, "steps": now_C + 12.0}.get(self.sensor, now_C)
-            if bad
-            else now_C
-        )
-
-    def play(self) -> None:
-        if self.line == "tcs2":
-            if not self.player["_course"]:
-                self.player["prepare"](self.port, self.path)
-            self.player["play"](self.port, self.measured)
-        elif self.line == "ni":
-            self.player["play"](self.path, self.measured)
-        else:
-            self.player["play"](self.path, self.put, lambda: self.put("off"), self.measured)
-
-    def is_off(self) -> bool:
-        return self.out[-1][1] in (0.0, b"A", "off")
-
-    def began_and_wrong(self, log: list[tuple[float, Any]], rested: bool) -> tuple[float | None, str]:
-        """When a play began, if it did, and what it put out that is not the drive."""
-        if self.line != "function":
-            begun = [(at_s, value) for at_s, value in log if isinstance(value, list) or value == b"L"]
-            for _, value in begun:
-                if isinstance(value, list) and value != [float(row["command_V"]) for row in self.rows]:
-                    return begun[0][0], "other volts"
-                if isinstance(value, list) and abs(self.daq.rate - self.delivery.rate_Hz) > 1e-6:
-                    return begun[0][0], "another rate"
-            return (begun[0][0] if begun else None), ""
-        sent = [each for each in log if each[1] != "off"][0 if rested else 1 :]
-        for (at_s, level), row in zip(sent, self.rows, strict=False):
-            late_s = at_s - sent[0][0] - float(row["time_s"])
-            if level != float(row["display_C"]) or not -TICK_S <= late_s <= self.player["LATE_S"] + TICK_S:
-                return sent[0][0], f"{level} °C, {late_s} s late"
-        return (sent[0][0] if sent else None), ""
 
 
 @pytest.mark.parametrize("line", LINES)
@@ -139,9 +27,10 @@ def test_scripts(line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
         rng = np.random.default_rng([7, list(LINES).index(line), number])
         world = World(line, rng, tmp_path, monkeypatch)
         world.clock = str(rng.choice(["right", "right", "coarse", "no number", "back", "stands"]))
-        world.sensor = str(rng.choice(["live", "live", "frozen", "no number", "steps"]))
+        sensor, step_K = world.first, world.first.step_K
+        sensor.fault = str(rng.choice(["live", "live", "frozen", "no number", "steps"]))
         free_s, least_s, rested = world.true_s, max(REST_S, PAUSE_S), False
-        world.clock_s, world.sensor_s, world.abort_s = world.true_s + rng.uniform(0, 100, 3)
+        world.clock_s, sensor.fault_s, world.abort_s = world.true_s + rng.uniform(0, 100, 3)
         for _ in range(4):
             log, called_s = len(world.out), world.true_s
             try:
@@ -150,7 +39,7 @@ def test_scripts(line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
             except RuntimeError as problem:
                 why = str(problem)
             began_s, wrong = world.began_and_wrong(world.out[log:], rested)
-            told = f"{line} {number}: {world.clock}, {world.sensor}: {why}"
+            told = f"{line} {number}: {world.clock}, {sensor.fault}: {why}"
             assert not wrong, f"{told}: {wrong}"
             if began_s is not None:
                 plays += 1
@@ -159,10 +48,10 @@ def test_scripts(line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
                 world.true_s += float(rng.uniform(0, PAUSE_S))
                 continue
             if not why:
-                seen_s = world.true_s - max(world.sensor_s, called_s)
+                seen_s = world.true_s - max(sensor.fault_s, called_s)
                 assert began_s is not None
-                frozen = world.sensor == "frozen" and (world.sensor_s > began_s + 0.5 or world.quantum_K == 0.1)
-                assert seen_s < 0.2 or world.sensor == "live" or frozen, f"{told}: the sensor was not noticed"
+                frozen = sensor.fault == "frozen" and (sensor.fault_s > began_s + 0.5 or step_K == 0.1)
+                assert seen_s < 0.2 or sensor.fault == "live" or frozen, f"{told}: the sensor was not noticed"
                 between = world.clock == "back" and world.clock_s < called_s  # then it only makes the pause longer
                 assert world.true_s - world.clock_s < 0.2 or world.clock in ("right", "coarse") or between, told
                 free_s, least_s, rested = world.true_s, PAUSE_S, True
@@ -170,26 +59,118 @@ def test_scripts(line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
                 continue
             stops += 1
             assert world.is_off(), told
-            due = {"frozen": "frozen", "live": "abort", "no number": "lost", "steps": "outside"}[world.sensor]
-            assert any(word in why for word in (due, "abort", "clock", "stopped before")), told
+            due = {"frozen": "frozen", "live": "abort", "no number": "lost", "steps": "outside"}[sensor.fault]
+            assert any(word in why for word in (due, "abort", "clock", "stopped before", "prediction")), told
             free_s, least_s, rested = world.true_s, max(REST_S, PAUSE_S), False
             world.true_s += float(rng.uniform(0, 3.0))
             world.player["reset"]() if world.clock in ("right", "coarse") and rng.random() < 0.5 else world.start()
-            world.sensor_s = math.inf
+            sensor.fault_s = math.inf
+        assert not world.daq.open_tasks
+        assert not world.port.device.garbled
     assert plays > RUNS // 4
     assert stops > RUNS // 12
 
 
+@pytest.mark.parametrize("line", LINES)
+def test_many_plays_in_one_process(line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With aborts and resets at any time: each play is right, and what it needed is free again."""
+    rng = np.random.default_rng([9, list(LINES).index(line)])
+    world, plays, rested = World(line, rng, tmp_path, monkeypatch), 0, False
+    free_s, least_s = world.true_s, max(REST_S, PAUSE_S)
+    while plays < (2 * RUNS) // 5:
+        log, is_aborted = len(world.out), bool(rng.random() < 0.2)
+        world.abort_s = world.true_s + float(rng.uniform(0, 40)) if is_aborted else math.inf
+        try:
+            world.play()
+        except RuntimeError as problem:
+            assert "abort() was called" in str(problem)
+            assert is_aborted
+            assert world.is_off()
+            world.true_s += float(rng.uniform(0, 3.0))
+            world.player["reset"]()
+            free_s, least_s, rested = world.true_s, max(REST_S, PAUSE_S), False
+        else:
+            began_s, wrong = world.began_and_wrong(world.out[log:], rested)
+            assert not wrong
+            assert world.is_whole(world.out[log:], rested)
+            assert began_s is not None
+            assert began_s - free_s >= least_s - TICK_S
+            plays += 1
+            free_s, least_s, rested = world.true_s, PAUSE_S, True
+            world.true_s += PAUSE_S + float(rng.uniform(0, 3.0))
+        assert not world.daq.open_tasks
+        if world.line == "tcs2":
+            world.is_prepared &= bool(rng.random() < 0.7)
+
+
+def test_healthy_plays_are_not_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sensors off by 0.3 K, in steps, the second one late, readings of up to 0.8 of the time to react."""
+    for number in range(3 * RUNS * 2 // 5):
+        rng = np.random.default_rng([10, number])
+        line = list(LINES)[number % 3]
+        world = World(line, rng, tmp_path, monkeypatch)
+        world.clock, react_s = str(rng.choice(["right", "coarse"])), float(rng.choice([0.05, 0.1, 0.5, 2.0]))
+        world.player.update(REACT_S=react_s, LOOK_EVERY_S=react_s / 2.0, LATE_S=react_s)
+        gain = float(rng.uniform(0.8, 1.2)) if line == "ni" else 1.0  # a loop corrects the gain of its driver
+        world.gain, world.late_s = gain, 0.0 if line == "ni" else float(rng.uniform(-0.1, 0.1))  # of other loops
+        world.first.step_K = float(rng.choice([0.01, 0.0625, 0.1]))
+        world.first.off_K = float(rng.uniform(-0.3, 0.3))
+        share = 0.8 if rng.random() < 0.7 else 0.0
+        world.first.takes_s = share * react_s
+        if rng.random() < 0.7:
+            world.second = Sensor(world, float(rng.choice([0.01, 0.0625, 0.1])))
+            world.second.off_K, world.second.lag_s = float(rng.uniform(-0.3, 0.3)), float(rng.uniform(0, 0.3))
+            world.first.takes_s = world.second.takes_s = share * react_s / 2.0
+        world.play()
+        world.true_s += PAUSE_S + 1.0
+        log = len(world.out)
+        world.play()
+        assert world.is_whole(world.out[log:], rested=True)
+
+
+STOPS_S = {"lies": 0.3, "hangs": 0.0, "slow": 0.0, "frozen": 1.0}
+"""How long what a sensor does must last, besides two looks and the time to react."""
+
+
+@pytest.mark.parametrize("which", ["first", "second"])
+@pytest.mark.parametrize("fault", STOPS_S)
+def test_a_sensor_that_fails_in_mid_play_stops(
+    fault: str, which: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for number in range(-(-RUNS // 16)):
+        rng = np.random.default_rng([11, list(STOPS_S).index(fault), number])
+        world = World(list(LINES)[number % 3], rng, tmp_path, monkeypatch)
+        world.second = Sensor(world, world.first.step_K)
+        world.second.lag_s = float(rng.uniform(0, 0.3))
+        sensor = world.first if which == "first" else world.second
+        sensor.fault, sensor.lie_K = fault, float(rng.choice([-1, 1]) * rng.uniform(1.5, 5.0))
+        if fault == "lies":
+            sensor.lie_K += math.copysign(0.6, sensor.lie_K)  # what the other one's lag may hide
+        begins_s = (
+            world.true_s + REST_S + (float(rng.uniform(0.1, 1.2)) if fault == "frozen" else rng.uniform(0.1, 7.0))
+        )
+        sensor.fault_s = begins_s
+        with pytest.raises(RuntimeError) as stopped:
+            world.play()
+        words = {"lies": "apart|outside|prediction", "hangs": "for a reading", "slow": "for a reading"}
+        assert any(word in str(stopped.value) for word in words.get(fault, "frozen|apart").split("|"))
+        assert world.is_off()
+        assert not world.daq.open_tasks
+        react_s = world.player["REACT_S"]
+        most_s = STOPS_S[fault] + 3.0 * react_s + (2.5 if fault == "frozen" else 0.0)
+        assert world.true_s - begins_s <= most_s, f"{fault} {number}: {stopped.value}"
+
+
 @pytest.mark.parametrize("device", ["dac-12", "closed-loop-controller"])
 def test_in_c(device: str, tmp_path: Path, tool: Callable[[str], str]) -> None:
-    program = build(tmp_path, device, tool("cc"), **({"loop": LOOP} if device == "closed-loop-controller" else {}))
+    program = build(tmp_path, device, tool("cc"))
     rng, faults = np.random.default_rng([8, len(device)]), set()
     for _ in range(RUNS // 2):
         dt_us = float(rng.choice([1000, 5000, 10_000]))
-        turns = 70e6 / dt_us
+        turns = 80e6 / dt_us
         at = [float(each) for each in rng.integers(0, turns, 4)]
         clocks: list[dict[str, float]] = [
-            {}, {"tick_us": 1000.0}, {"tick_us": 10_000.0}, {"start_us": 2**32 - float(rng.uniform(0, 70e6))},
+            {}, {"tick_us": 1000.0}, {"tick_us": 10_000.0}, {"start_us": 2**32 - float(rng.uniform(0, 80e6))},
             {"stand_at": at[0]}, {"back_at": at[0], "back_us": float(rng.uniform(dt_us + 1, 1e9))},
             {"late_at": at[0], "late_us": float(rng.uniform(2.1e4, 5e5))},
         ]  # fmt: skip

@@ -1,10 +1,10 @@
 """PsychoPy players on a simulated clock, NI device or serial line."""
 
 import csv
+import hashlib
 import io
 import re
 import sys
-import types
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
@@ -16,6 +16,7 @@ import pytest
 
 from tests.circuit.daq import Daq
 from tests.circuit.delivery.one_drive import changed, icon_of, prepare
+from tests.circuit.serial_line import Serial
 from tests.circuit.verdicts import LOOP, MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import load_format
@@ -35,6 +36,9 @@ class Clock:
 
     def monotonic(self) -> float:
         return self.now
+
+    def passes(self, seconds: float) -> None:
+        self.now += seconds
 
     def sleep(self, seconds: float) -> None:
         assert seconds > 0
@@ -63,10 +67,11 @@ class Bench:
         self.player: dict[str, Any] = {}
         exec(compile(self.files["play_icons.py"], "play_icons.py", "exec"), self.player)
         self.player["time"] = self.clock
+        self.player["POLARITY_SEEN"] = "A. Name, today"
         self.reading = 32.0
         self.noise = 0.001
-        self.sent: list[bytes] = []
-        self.port = types.SimpleNamespace(write=self.sent.append)
+        self.port = Serial(self.clock.passes)
+        self.sent = self.port.commands
 
     def measured(self) -> float:
         """A live reading: its last digit moves."""
@@ -82,6 +87,19 @@ class Bench:
     def stops(self, words: str, *arguments: object) -> None:
         with pytest.raises(RuntimeError, match=words):
             self.play(*arguments)
+
+    def rejudge(self) -> None:
+        """What is in the folder now counts as judged."""
+        self.player["DRIVES"][self.drive] = hashlib.sha256(Path(self.path).read_bytes()).hexdigest()
+
+    def follows(self, later_s: float = 0.0) -> float:
+        """A display that goes where it is predicted to go, after the rest of 30 s."""
+        display = self.ready.delivery.trace
+        return (
+            float(np.interp(self.clock.now - 130.0 - later_s, display.time_s, display.display_C))
+            + self.measured()
+            - 32.0
+        )
 
     def at(self, time_s: float, strikes: Callable[[], None]) -> None:
         """What happens once, later."""
@@ -159,15 +177,18 @@ class TestVolts:
 
     def test_swapped_wires_are_found_before_the_first_play_and_right_ones_pass(self, ni: Bench) -> None:
         ni.cools(sign=-1.0)
-        ni.stops(r"fell by -\d\.\d\d K, not by 0\.15 K, under 2 V that must cool", ni.measured)
-        assert ni.daq.out == [2.0, 0.0]  # 0.2 A through 0.1 A/V
+        ni.stops(r"fell by -\d\.\d\d K at the sensor, not by 0\.15 K, under 0\.2 A that must cool", ni.measured)
+        assert ni.daq.out == [0.0, 0.0, 2.0, 0.0]  # off before, then 0.2 A through 0.1 A/V
+        assert ni.clock.now == pytest.approx(100.0 + 10.0 + 0.5, abs=0.1)
         ni.player["reset"]()
         ni.clock.events.clear()
         ni.cools()
         ni.play(ni.measured)
-        assert ni.daq.out[2] == 2.0
+        assert ni.daq.out[6] == 2.0
 
-    @pytest.mark.parametrize("at_s", [100.2, 110.0, 132.0], ids=["test of the wires", "rest", "play"])
+    @pytest.mark.parametrize(
+        "at_s", [105.0, 110.2, 120.0, 142.5], ids=["off before", "test of the wires", "rest", "play"]
+    )
     def test_an_interrupt_leaves_no_current(self, ni: Bench, at_s: float) -> None:
         ni.cools()
         ni.at(at_s, interrupt)
@@ -181,13 +202,12 @@ class TestVolts:
         ni.cools()
 
         def reading() -> float:
-            if ni.clock.now > 100.0 + ni.player["TEST_S"] - 1e-9:
+            if ni.clock.now > 110.0 + ni.player["TEST_S"] - 1e-9:
                 return last if last is not None else 1 / 0
             return ni.measured()
 
         ni.stops("the sensor is lost", reading)
-        assert ni.daq.out == [2.0, *[0.0] * (len(ni.daq.out) - 1)]
-        assert len(ni.daq.out) > 1
+        assert ni.daq.out == [0.0, 0.0, 2.0, 0.0]
 
     @pytest.mark.parametrize(
         ("reading", "words"),
@@ -218,6 +238,7 @@ class TestVolts:
         assert 0.1 * np.array(fast.daq.out[1]) == pytest.approx(judged.at(times + 1e-9), abs=1e-9)
         thinned = load_format("csv").write(fast.ready.delivery)
         Path(fast.path).write_bytes(thinned)
+        fast.rejudge()
         fast.clock.now += 100.0
         fast.stops(
             r"row \d+: at \d\.\d+ s, where rows at one rate from 0 s on have .* give a drive with a row for each"
@@ -237,8 +258,11 @@ class TestVolts:
         lines = [line.split(",") for line in Path(ni.path).read_text().splitlines()]
         lines[row][column] = cell
         Path(ni.path).write_text("\n".join(map(",".join, lines)))
+        ni.stops("is not the file that was judged, its digest differs: export it again")
+        ni.rejudge()
         ni.stops(words)
         Path(ni.path).write_text("\n".join(map(",".join, lines[:2])))
+        ni.rejudge()
         ni.stops("two rows or more" if row else "cannot be read")
         assert not ni.daq.out
 
@@ -303,7 +327,7 @@ class TestThermode:
         assert b"L" not in tcs.sent
         tcs.player["play"](tcs.port)
         assert tcs.sent == tcs.files[tcs.drive].split()
-        assert tcs.clock.now == pytest.approx(130.0)
+        assert tcs.clock.now == pytest.approx(130.0, abs=0.02)  # with 0.01 s of line
         with pytest.raises(RuntimeError, match=r"wait 28\.0 s more"):  # 8 s of icon and 20 s of pause
             tcs.player["play"](tcs.port)
 
@@ -316,10 +340,13 @@ class TestThermode:
         tcs.player["reset"]()
         began = tcs.clock.now
         tcs.player["play"](tcs.port)
-        assert tcs.clock.now == pytest.approx(began + 30.0)
+        assert tcs.clock.now == pytest.approx(began + 30.0, abs=1e-3)
 
     def test_a_profile_that_ends_early_is_not_sent(self, tcs: Bench) -> None:
         Path(tcs.path).write_bytes(tcs.files[tcs.drive][:-9])
+        with pytest.raises(RuntimeError, match="is not the file that was judged"):
+            tcs.player["prepare"](tcs.port, tcs.path)
+        tcs.rejudge()
         with pytest.raises(ValueError, match="not the commands of a profile"):
             tcs.player["prepare"](tcs.port, tcs.path)
         assert not tcs.sent
@@ -376,11 +403,12 @@ class TestSetpoints:
     def test_a_controller_without_a_second_sensor_is_told_once(self, bench: Callable[..., Bench]) -> None:
         loop = bench(self.LOOP, loop=LOOP)
         with pytest.warns(UserWarning, match="needs a second sensor: give its function as second_C") as told:
-            loop.play(lambda _: None, lambda: None, loop.measured)
+            loop.play(lambda _: None, lambda: None, loop.follows)
         assert len(told) == 1
         loop.clock.now += 100.0
         with warnings.catch_warnings(action="error"):
-            loop.play(lambda _: None, lambda: None, loop.measured, lambda: 32.0 + 1e-3 * (loop.clock.now % 2))
+            began_s = loop.clock.now - 130.0
+            loop.play(lambda _: None, lambda: None, *[lambda: loop.follows(began_s)] * 2)
 
     def test_as_a_voltage_off_is_the_rest(self, bench: Callable[..., Bench]) -> None:
         gain = changed(self.LOOP, "set-point gain", "V/K", value=0.1)
