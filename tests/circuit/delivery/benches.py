@@ -8,7 +8,7 @@ import numpy as np
 
 from tests.circuit.delivery.exported_files import Course
 from tests.circuit.delivery.independent import KELVIN, Array, Circuit, Json
-from tests.circuit.delivery.lanes import Lanes, joined
+from tests.circuit.delivery.lanes import BEYOND, LONGEST, SUM, Lanes, joined
 from tests.circuit.delivery.replay import Held
 
 
@@ -33,7 +33,7 @@ class Bench:
         return flows**2 if self.peak is None else np.abs(flows) * self.peak * self.gain
 
     def watched(self, far: Array) -> Array:
-        """Extremes (lanes, 4, 2) of temperatures that have limits, of `far` (lanes, 9)."""
+        """Extremes (lanes, 4, 2) of temperatures that have limits, of `far` (lanes, 12)."""
         return far[:, :8].reshape(-1, 4, 2)
 
     def rest(self) -> Array:
@@ -45,8 +45,15 @@ class Bench:
         return self.lanes.steady(*self.flow(0.0).T)
 
     def off(self, state: Array, world: Array, span_s: float) -> Array:
-        """No current."""
-        return self.lanes.hold(state, world, np.zeros((len(world), 2)), span_s)
+        """No current; the second cut-off begins anew."""
+        return self._off(self.lanes, state, world, span_s)
+
+    @staticmethod
+    def _off(lanes: Lanes, state: Array, world: Array, span_s: float) -> Array:
+        longest_s = state[:, LONGEST].copy()
+        far = lanes.hold(state, world, np.zeros((len(world), 2)), span_s)
+        state[:, LONGEST], state[:, BEYOND] = longest_s, 0.0
+        return far
 
     def wait(self, state: Array, span_s: float) -> Array:
         """Rest before a play."""
@@ -76,19 +83,22 @@ class Bench:
         """What was commanded just before a time, for longer."""
         return self.lanes.hold(state, self.every, self.flow(*self.at(time_s)), span_s)
 
-    def settling(self, level_C: float) -> Array:
-        """Flows (worlds,) that hold the display at a level, or as near to it as the driver can."""
+    def settling(self, level_C: Array | float) -> Array:
+        """Flows (worlds,) that hold the display at levels, or as near to them as the driver can."""
         circuit = self.lanes.circuit
         matrix, heat = circuit.matrix, circuit.heat
         skin = np.linalg.solve(matrix[:, 2:, 2:], np.stack([matrix[:, 2:, 1], heat[:, 2:]], axis=2))
         own, got = (matrix[:, 1, 2:, None] * skin).sum(axis=1).T
-        flows = self.least + (self.most - self.least) * np.linspace(0, 1, 1001)[:, None]
-        joule, pump = 0.5 * circuit.ohm * self.squares(flows), circuit.alpha * flows
-        hot, cold = matrix[:, 0, 0] - pump, matrix[:, 1, 1] - own + pump
-        cross = matrix[:, 0, 1]
-        into = heat[:, 0] + joule + pump * KELVIN, heat[:, 1] - got + joule - pump * KELVIN
-        shown = (hot * into[1] - cross * into[0]) / (hot * cold - cross**2)
-        place = np.abs(shown - level_C).argmin(axis=0)
+        least, most, steps = self.least, self.most, np.linspace(0, 1, 401)[:, None]
+        for _ in range(2):  # on the whole way, then beside the nearest
+            flows = least + (most - least) * steps
+            joule, pump = 0.5 * circuit.ohm * self.squares(flows), circuit.alpha * flows
+            hot, cold = matrix[:, 0, 0] - pump, matrix[:, 1, 1] - own + pump
+            cross = matrix[:, 0, 1]
+            into = heat[:, 0] + joule + pump * KELVIN, heat[:, 1] - got + joule - pump * KELVIN
+            shown = (hot * into[1] - cross * into[0]) / (hot * cold - cross**2)
+            place = np.abs(shown - level_C).argmin(axis=0)
+            least, most = (flows[np.clip(place + side, 0, 400), self.every] for side in (-1, 1))
         return np.asarray(flows[place, self.every])
 
 
@@ -114,10 +124,10 @@ class Display(Bench):
         return self.free.steady(*self.flow(0.0).T)
 
     def off(self, state: Array, world: Array, span_s: float) -> Array:
-        return self.free.hold(state, world, np.zeros((len(world), 2)), span_s)
+        return self._off(self.free, state, world, span_s)
 
-    def settling(self, level_C: float) -> Array:
-        return np.full(len(self.every), level_C)
+    def settling(self, level_C: Array | float) -> Array:
+        return np.broadcast_to(np.asarray(level_C, dtype=np.float64), len(self.every))
 
     def watched(self, far: Array) -> Array:
         return super().watched(far)[:, :2]
@@ -150,7 +160,7 @@ class Loop(Bench):
     def rest(self) -> Array:
         flows = self.settling(self.held.rest[0])
         state = self.lanes.steady(flows, flows**2)
-        state[:, -1] = flows / self.gain
+        state[:, SUM] = flows / self.gain
         self.wait(state, 30.0)
         return state
 
@@ -159,7 +169,7 @@ class Loop(Bench):
 
     def off(self, state: Array, world: Array, span_s: float) -> Array:
         far = super().off(state, world, span_s)
-        state[:, -1] = 0.0
+        state[:, SUM] = 0.0
         return far
 
     def run(self, state: Array, begin_s: float, end_s: float) -> Array:
