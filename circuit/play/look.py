@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from .watch import Stopped
 
 
-class Look:
+class SensorLook:
     """Reads sensors one after another, so that functions of one bus are never called at once.
 
     The guard does not wait for them: a reading that never comes back must not keep the output on.

@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable, Generator, Iterator
 from typing import TYPE_CHECKING, Any
 
-from .look import Look
+from .look import SensorLook
 from .watch import Numbers, Refused, Stopped, Watch
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class Steps:
         self.rested, self.ended_s = False, -math.inf
         self._held_s: float | None = None
         self._now_s, self._stood_s, self._due_s = -math.inf, 0.0, -math.inf
-        self._look: Look | None = None
+        self._look: SensorLook | None = None
         self._asked_s = self._fed_s = -math.inf
         self._levels_C: dict[str, float] = {}
         self._look_s, self._slowest = 0.0, ("", 0.0)
@@ -208,7 +208,7 @@ class Steps:
         sensors: dict[str, Callable[[], float | None]] = {"sensor": self._line.read}
         if self._second_C is not None:
             sensors["second sensor"] = self._second_C
-        self._asked_s, self._look = self._now_s, Look(sensors, self._clock)
+        self._asked_s, self._look = self._now_s, SensorLook(sensors, self._clock)
 
     def _seen(self) -> Generator[float, None, dict[str, float]]:
         """A look that begins now: °C by sensor."""
