@@ -15,7 +15,6 @@ from .delivered_drive import DeliveredDrive, loss_table
 from .device import Device
 from .formats import Format, FormatError
 from .formats.form import Played, events_in
-from .formats.tables import write_predicted
 from .prepare import Prepared, Refusal
 from .setpoints import Setpoints, lag_of
 
@@ -89,6 +88,8 @@ def _predicted_file(delivery: DeliveredDrive, drive: str) -> dict[str, bytes]:
     stem, _, suffix = drive.rpartition(".")
     if suffix != "csv" or not delivery.device.kind.regulated:
         return {}
+    from .formats.tables import write_predicted
+
     return {f"{stem}.predicted.csv": write_predicted(delivery)}
 
 

@@ -1,4 +1,4 @@
-"""A player of exported drives on a simulated clock, NI device or serial line."""
+"""A player of drives on a simulated clock, NI card or serial line."""
 
 import csv
 import hashlib
