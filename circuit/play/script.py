@@ -14,7 +14,7 @@ from types import ModuleType
 from typing import NamedTuple
 
 from . import drives as drives_module
-from . import function, guard, line, look, ni, tcs2, watch
+from . import function, guard, line, look, ni, steps, tcs2, watch
 from .watch import Numbers
 
 HEAD = '''"""Plays exported icons {on}. Made by thermicon; never played on a device.
@@ -222,7 +222,9 @@ def script(
     """The script for a line and the drives that were judged; equal inputs give equal text."""
     module, functions = LINES[kind]
     names: dict[str, set[str]] = {"time": set(), "os": set(), "atexit": set()}
-    texts = [_parted(inspect.getsource(each), names) for each in (line, watch, look, guard, drives_module, module)]
+    texts = [
+        _parted(inspect.getsource(each), names) for each in (line, watch, look, steps, guard, drives_module, module)
+    ]
     imports = [f"import {name}" for name, of in sorted(names.items()) if not of]
     imports += [f"from {name} import {', '.join(sorted(of))}" for name, of in sorted(names.items()) if of]
     top = {"ni": f'CHANNEL = "Dev1/ao0"\nOFF_V = {off_V!r}\nV_PER_A = {V_per_A!r}\n', "tcs2": 'PORT = "COM3"\n'}

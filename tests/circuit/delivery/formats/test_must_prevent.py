@@ -1,6 +1,7 @@
 """Numbers of the gate as players get them: the strictest of a set, rounded to the safe side."""
 
 import ast
+import hashlib
 import re
 from dataclasses import replace
 from functools import cache
@@ -16,6 +17,8 @@ from tests.circuit.verdicts import MADE_UP, POLARITY, GreenVerdict
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.formats.form import Played
+from thermicon.circuit.play.drives import check_commands
+from thermicon.circuit.play.watch import Refused
 from thermicon.circuit.safety.demands import CutOff, Demands, HeldCutOff, Loop, PolarityCheck
 from thermicon.icons import load_library
 
@@ -123,3 +126,35 @@ def _values(node: ast.expr) -> list[Any]:
     except ValueError:
         return []
     return list(value) if isinstance(value, tuple) else [value]
+
+
+@pytest.mark.parametrize("device", ["ni-analogue-output", "closed-loop-controller"])
+def test_what_is_demanded_is_in_the_script(device: str) -> None:
+    """The test of the wires for a controller too, the second cut-off, and the drive with what it is predicted to do."""
+    demands = replace(MADE_UP, held_cut_off_display_C=HeldCutOff(25.0, 38.0, 9.0))
+    played = replace(drive("psychopy", device), content=b"bytes")
+    for needed, held in ((demands, (25.0, 38.0, 9.0)), (MADE_UP, (None, None, None))):
+        script: dict[str, Any] = {}
+        exec(
+            compile(load_format("psychopy").player([played], needed)["play_icons.py"], "play_icons.py", "exec"), script
+        )
+        script["atexit"].unregister(script["abort"])
+        assert (script["HELD_LOW_C"], script["HELD_HIGH_C"], script["HELD_S"]) == held
+        assert script["_numbers"]().held_s == held[2]
+    test = script["TEST_POLARITY"], script["TEST_CURRENT_A"], script["TEST_S"], script["TEST_FALL_K"]
+    assert test == (True, 0.2, 0.5, 0.15)
+    assert (script["OFF_BEFORE_TEST_S"], script["POLARITY_SEEN"]) == (10.0, "")
+    assert script["CLOSED_LOOP"] == (device == "closed-loop-controller")
+    assert script["DRIVES"] == {"a.h": hashlib.sha256(b"bytes").hexdigest()}
+    commands = played.delivery.played.command
+    assert script["COMMANDS"]["a.h"] == pytest.approx((commands.min(), commands.max()), abs=1e-5)
+    trace = played.delivery.trace
+    times = 0.1 * np.arange(len(script["COURSES_C"]["a.h"]))
+    assert script["COURSES_C"]["a.h"] == pytest.approx(np.interp(times, trace.time_s, trace.display_C), abs=0.006)
+
+
+def test_a_command_beyond_those_that_were_judged_is_refused() -> None:
+    check_commands("a.csv", [-1.0, 2.0], (-1.0, 2.0))
+    for command in (-1.1, 2.1):
+        with pytest.raises(Refused, match=r"a\.csv: a command of -?\d\.1, judged were -1 to 2"):
+            check_commands("a.csv", [0.0, command], (-1.0, 2.0))

@@ -162,6 +162,47 @@ def test_a_sensor_that_fails_in_mid_play_stops(
         assert world.true_s - begins_s <= most_s, f"{fault} {number}: {stopped.value}"
 
 
+REMOVED = {
+    "outside 20 to 40": ("if not low_C <= now_C <= high_C:", "ni", "steps"),
+    "is lost": ("if not SENSOR_LOWEST_C < now_C < SENSOR_HIGHEST_C:", "ni", "no number"),
+    "K apart": ("if apart_K > APART_K:", "ni", "lies"),
+    "from its prediction": ("beside_K > BESIDE_K, now_s) > BESIDE_S:", "function", "lies"),
+    "is frozen": ("SENSOR_STEP_K", "ni", "frozen"),
+    "allowed": ("if most_s is not None and lasts_s > most_s:", "ni", ""),
+    "for a reading": ("if is_watched and self._answer_s + NOTHING_S < gap_s < math.inf:", "ni", "slow"),
+    "clock of this computer is wrong": ("if not before_s <= now_s < math.inf:", "ni", ""),
+}
+"""Words of each stop, with the text that is changed to remove it, and the line and the fault that it stops."""
+
+
+@pytest.mark.parametrize("words", REMOVED)
+def test_each_stop_is_needed(words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without it the same fault is not stopped for the same reason."""
+    old, line, fault = REMOVED[words]
+    new = "if False:" if old.startswith("if ") else old.rpartition(">")[0] + "> math.inf:"
+    if words == "is frozen":
+        old, new = "> numbers.frozen_s:", "> math.inf:"
+    for is_removed in (False, True):
+        world = World(line, np.random.default_rng([12]), tmp_path, monkeypatch)
+        if is_removed:
+            assert world.script.count(old) == 1
+            world.start(lambda script: script.replace(old, new))
+        world.first.fault, world.first.lie_K, world.first.step_K = fault, 3.0, 0.01
+        world.first.fault_s = world.true_s + REST_S + 0.2
+        if words == "K apart":
+            world.second = Sensor(world, 0.01)
+        if words == "allowed":
+            world.player.update(HELD_LOW_C=31.9, HELD_HIGH_C=36.0, HELD_S=0.5)
+        if words.startswith("clock"):
+            world.clock, world.clock_s = "back", world.true_s + REST_S + 2.0
+        why = ""
+        try:
+            world.play()
+        except (RuntimeError, ValueError, AssertionError) as problem:
+            why = str(problem)
+        assert (words in why) != is_removed, why
+
+
 @pytest.mark.parametrize("device", ["dac-12", "closed-loop-controller"])
 def test_in_c(device: str, tmp_path: Path, tool: Callable[[str], str]) -> None:
     program = build(tmp_path, device, tool("cc"), **({"loop": LOOP} if device == "closed-loop-controller" else {}))
