@@ -220,6 +220,7 @@ def test_each_torn_row_has_a_file_of_its_own(module: Any, tmp_path: Path) -> Non
     assert list(module.given_answers(tmp_path, "A")) == [1, 2]
     kept = [tmp_path / f"sub-A_task-quick_answers.torn-{number}.csv" for number in (1, 2)]
     assert [path.read_text(encoding="utf-8") for path in kept] == ["A,2,dip", "A,3,gl"]
+    assert len(list(tmp_path.iterdir())) == 3, "no draft is left"
 
 
 GLUED = "A,3,dip,dA,4,glow,glow,2.300\n"

@@ -246,6 +246,56 @@ def test_commands_are_sent_to_a_thermode_while_the_keys_are_read(quick: Path, mo
         bench.Display("tcs2")
 
 
+def test_a_trial_begins_only_after_its_commands_were_sent(
+    quick: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench_of(quick, monkeypatch)
+    monkeypatch.delitem(sys.modules, "study_answers", raising=False)
+    monkeypatch.delitem(sys.modules, "run_study", raising=False)
+    study: Any = importlib.import_module("run_study")
+    calls: list[str] = []
+
+    class SlowLine:
+        """A display whose commands take 100 ticks longer than the gap; a play ends at once."""
+
+        left = 0
+
+        def prepare(self, drive: str) -> None:
+            self.left = 2100
+
+        def play(self, drive: str) -> None:
+            calls.append(f"play after {2100 - self.left} ticks")
+
+        def keep(self) -> None:
+            self.left -= self.left > 0
+
+        @property
+        def busy(self) -> bool:
+            return self.left > 0
+
+    class Screen:
+        """Ticks of 0.01 s."""
+
+        s = 0.0
+
+        def now(self) -> float:
+            return self.s
+
+        def tick(self) -> list[str]:
+            self.s += 0.01
+            return ["1"] if self.s > 30.0 else []
+
+        def show(self, text: str) -> None: ...
+        def expect(self, presented: str, choices: dict[str, str]) -> None: ...
+
+    run = study.Run("A", Screen(), SlowLine(), lambda code: None, tmp_path, {})
+    run.free_s = 20.0
+    row = next(row for row in rows_of(quick / "sub-A_task-quick_conditions.csv") if row["trial"] == "1")
+    assert run.trial(row) == "dip"
+    assert calls == ["play after 2100 ticks"]
+    assert list(run.given) == [1]
+
+
 def test_abort_switches_off_although_the_player_cannot(controller: Any) -> None:
     controller.player.stopped = "the line is lost"
     with pytest.raises(RuntimeError, match="the line is lost"):
