@@ -1,4 +1,4 @@
-"""What holds for every loop that may play set-points around a module: its cut-offs, its currents, its gains.
+"""What holds for every loop that may play set-points around a module.
 
 Limits for any loop, in any play after any other, are in `any_loop.py`. Here the loop that the set-points are shaped for
 is tested for oscillation in the fastest and slowest corners.

@@ -1,4 +1,4 @@
-"""Demands of the gate on the hardware, which keep a drive safe with a single fault, as records."""
+"""Demands on the hardware that keep a drive safe with a single fault."""
 
 from __future__ import annotations
 

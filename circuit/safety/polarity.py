@@ -1,4 +1,4 @@
-"""The test of the wiring before a first play: which current shows that more of it cools, from wherever it begins."""
+"""The test of the wiring before a first play."""
 
 from __future__ import annotations
 
