@@ -19,7 +19,7 @@ from thermicon.circuit.delivery.delivered_drive import (
 from thermicon.circuit.delivery.setpoints import Setpoints
 from thermicon.circuit.rig.uncertainty import Uncertainty
 from thermicon.circuit.safety.checks import Before, Check, Scenario
-from thermicon.circuit.safety.demands import CutOff, Harm, SingleFault
+from thermicon.circuit.safety.demands import CutOff, Harm, HeldCutOff, SingleFault
 from thermicon.circuit.safety.gate import Gate
 from thermicon.circuit.safety.repeated import Repeated
 from thermicon.circuit.solver.trace import Outcome
@@ -34,6 +34,7 @@ KEPT = replace(SKIN, value=41.0, since_s=None, from_start_K=3.0)
 SLOW = replace(SKIN, quantity="rate of skin temperature", value=12.0, limit=10.0, unit="K/s", since_s=2.0)
 SOFT = replace(SKIN, severity="soft", limit=40.0)
 FIRST = replace(SKIN, since_s=0.0)
+HELD, HOT = HeldCutOff(22.0, 39.5, 8.2), Harm("display", 46.0, "°C")
 NO_CORNER, NO_CUT_OFF = (0.0,) * 7, replace(CUT_OFF, react_within_s=0.0)
 
 
@@ -42,11 +43,14 @@ def fault(kind: str, **values: object) -> SingleFault:
 
 
 FAULTS = {
-    "hang, watchdog": fault("hang", lasts_s=0.5, harm=Harm("skin surface", 42.3), watchdog_s=0.4),
+    "hang, watchdog": fault("hang", lasts_s=0.5, harm=Harm("skin surface", 42.3, "°C"), watchdog_s=0.4),
     "hang, none quick enough": fault("hang", lasts_s=0.06, harm=None, watchdog_s=0.0),
-    "stuck, cut-off": fault("stuck", harms=((Harm("display", 46.0), -1.5),), cut_off=CUT_OFF, most_A=1.5, limit_A=1.2),
-    "stuck, current limit": fault("stuck", harms=((Harm("display", 46.0), -1.5), (Harm("skin surface", 43.0), 1.5)),
+    "stuck, cut-off": fault("stuck", harms=((HOT, -1.5),), cut_off=CUT_OFF, most_A=1.5, limit_A=1.2),
+    "stuck, current limit": fault("stuck", harms=((HOT, -1.5), (Harm("skin surface", 43.0, "°C"), 1.5)),
                                   cut_off=NO_CUT_OFF, most_A=1.5, limit_A=1.2),
+    "stuck inside": fault("stuck inside", held=HELD, cut_off=CUT_OFF),
+    "stuck fast, kept": fault("stuck fast", rate=11.6, kept=True, limit_A=(-1.2, 1.2)),
+    "stuck fast, needed": fault("stuck fast", rate=10.5, kept=False, limit_A=(-1.29, 1.5)),
     "stuck, nothing": fault("stuck", harms=(), cut_off=NO_CUT_OFF, most_A=1.5, limit_A=None),
     "unpowered, rest": fault("unpowered", finding=SKIN, rest_s=5.0),
     "unpowered, at once": fault("unpowered", finding=None, rest_s=0.0),
@@ -57,7 +61,7 @@ FAULTS = {
     "loop stuck, its maker": fault("loop stuck", levels_C=(60.0,), passed_s=0.0, cut_off=NO_CUT_OFF),
     "unpowered loop": fault("unpowered loop", display_C=(24.0, 33.0), rest_s=30.0),
     "unpowered loop, long": fault("unpowered loop", display_C=(-4.0, 33.0), rest_s=None),
-    "loop lost": fault("loop lost", harms=((Harm("display", 50.0), -1.5),), cut_off=CUT_OFF),
+    "loop lost": fault("loop lost", harms=((Harm("display", 50.0, "°C"), -1.5),), cut_off=CUT_OFF),
 }  # fmt: skip
 
 
@@ -113,6 +117,10 @@ STRICT = replace(
     rest_before_first_play_s=0.0, pause_at_least_s=None, zero_current_at_most_s=300.0, current_limit_A=(-1.0, 1.2),
     loop=LOOP,
 )  # fmt: skip
+DRIVEN = replace(
+    MADE_UP, held_cut_off_display_C=HELD, current_limit_A=(-1.2, 1.2), faults=(FAULTS["stuck fast, kept"],)
+)
+FAST = replace(DRIVEN, faults=(FAULTS["stuck fast, kept"], FAULTS["stuck fast, needed"], FAULTS["hang, watchdog"]))
 PLAIN, AMBER = gated(), replace(gated(), repeated=repeated(SOFT))
 
 
@@ -128,6 +136,10 @@ GATE_WORDS = {
     "stuck, two cures": lambda m: m.stuck_text(of(SLOW_CUT, LIMITED)),
     "stuck, just too slow": lambda m: m.stuck_text(of(NEARLY_CUT)),
     "stuck, just quick enough": lambda m: (m.stuck_text(of(NEAR_CUT)), m.demands_text(of(NEAR_CUT))),
+    "stuck fast": lambda m: (m.stuck_fast_text(of(DRIVEN, FAST)), m.stuck_fast_text(of(DRIVEN, MADE_UP))),
+    "stuck fast, in lines": lambda m: [about for about, _ in m.gate_words([ready("a", gated(demands=FAST))])],
+    "demands, of a driver": lambda m: m.demands_text(of(DRIVEN, MADE_UP)),
+    "demands, too slow": lambda m: m.demands_text(of(replace(DRIVEN, cut_off_display_C=NO_CUT_OFF))),
     "repeated, unlike": lambda m: m.repeated_text([
         ("a", gated(recovery_s=None, plays=30, faultless_pause_s=8.0, shortest_pause_s=None)),
         ("b", AMBER),

@@ -122,8 +122,8 @@ def demands_text(gates: Sequence[Named]) -> str:
     limits = [one.current_limit_A for _, one in every if one.current_limit_A is not None]
     if limits:
         least, most = max(low for low, _ in limits), min(high for _, high in limits)
-        which = "driver" if loop is None else "controller"
-        parts.append(f"a {which} limited to {signed(least, 'g')} … {most:g} A by itself")
+        span = f"{signed(least, 'g')} … {most:g} A"
+        parts.append(f"a driver limited to {span} by itself" if loop is None else f"a controller limited to {span}")
     if loop is not None:
         (kp, most_kp), (ki, most_ki), set_to = loop.kp_A_per_K, loop.ki_A_per_Ks, loop.played
         parts.append(
