@@ -72,6 +72,8 @@ class Bench:
         self.least_A, self.most_A = (limit * gain for limit in demands["current_limit_A"])
         cut = demands["cut_off_display_C"]
         self.low_C, self.high_C, self.react_s = cut["low"], cut["high"], cut["react_within_s"]
+        held = demands["held_cut_off_display_C"] or {"low": -1e9, "high": 1e9, "longer_than_s": 1e9}
+        self.held_C, self.held_s = (held["low"], held["high"]), held["longer_than_s"]
         self.period_s = self.follower.period_s
 
     def start(self, level_C: float) -> None:
@@ -81,7 +83,7 @@ class Bench:
         self.display = self.follower.circuit.read(self.state[:, :, None])[:, 2, 0]
         self.felt, self.sum_A = self.display.copy(), amperes / self.follower.circuit.gain
         self.seen = [self.felt + self.which.offset_K] * (1 + int(np.ceil(self.which.delay_s.max() / self.period_s)))
-        self.off_in_s = np.full(len(self.felt), np.inf)
+        self.off_in_s, self.beyond_s = np.full(len(self.felt), np.inf), np.zeros(len(self.felt))
 
     def copy(self) -> Bench:
         """The same bench, to go on from here in another way."""
@@ -91,9 +93,12 @@ class Bench:
         return other
 
     def play(
-        self, levels_C: Array, stuck_A: Array | None = None, wrong_K: float = 0.0, every: int = 0
+        self, levels_C: Array, stuck_A: Array | None = None, wrong_K: float = 0.0, every: int = 0, fault: str = ""
     ) -> tuple[Array, list[Bench]]:
-        """Watched rows (rows, L, 4) under set-points, or a current that is stuck; `every`: copies on the way."""
+        """Watched rows (rows, L, 4) under set-points, or a current that is stuck; `every`: copies on the way.
+
+        The loop's sensor may be `frozen`, the wires may be `swapped`.
+        """
         which, gain = self.which, self.follower.circuit.gain
         keep = np.where(which.lag_s > 0, np.exp(-self.follower.row_s / np.maximum(which.lag_s, 1e-9)), 0.0)
         behind = np.floor(which.delay_s / self.period_s + 1e-9).astype(int)
@@ -107,7 +112,8 @@ class Bench:
                     for lane, k in zip(lanes, np.minimum(behind + 1, len(self.seen) - 1), strict=True)
                 ]
             )
-            self.seen = [*self.seen[1:], self.felt + which.offset_K + wrong_K]
+            reading = self.seen[-1] if fault == "frozen" else self.felt + which.offset_K + wrong_K
+            self.seen = [*self.seen[1:], reading]
             now = np.array([self.seen[-1 - k][lane] for lane, k in zip(lanes, behind, strict=True)])
             error = now - level
             grown = self.sum_A + which.ki * error * self.period_s
@@ -118,8 +124,12 @@ class Bench:
             self.sum_A = np.where(free, grown, np.where(which.bound, clipped, self.sum_A))
             if stuck_A is not None:
                 sent = stuck_A
+            elif fault == "swapped":
+                sent = -sent
             second = self.display + which.second_K
-            trips = (second < self.low_C) | (second > self.high_C)
+            beyond = (second < self.held_C[0]) | (second > self.held_C[1])
+            self.beyond_s = np.where(beyond & np.isinf(self.off_in_s), self.beyond_s + self.period_s, 0.0)
+            trips = (second < self.low_C) | (second > self.high_C) | (self.beyond_s > self.held_s)
             self.off_in_s = np.minimum(self.off_in_s - self.period_s, np.where(trips, self.react_s, np.inf))
             amperes = np.where(self.off_in_s < self.period_s * 0.5, 0.0, sent)
             for state in self.follower.update(amperes, self.state):
@@ -130,10 +140,11 @@ class Bench:
             self.state = states[-1]
         return self.follower.circuit.read(np.array(states).transpose(1, 2, 0)).transpose(2, 0, 1), copies
 
-    def judge(self, rows: Array, worst: Worst, wider_K: float = 0.0) -> None:
+    def judge(self, rows: Array, worst: Worst, wider_K: float = 0.0, rates: bool = True) -> None:
         """Levels and rates."""
         worst.levels(rows, wider_K)
-        worst.rates(rows, np.full(len(rows) - 1, self.follower.row_s))
+        if rates:
+            worst.rates(rows, np.full(len(rows) - 1, self.follower.row_s))
 
 
 def at_work(
@@ -142,6 +153,7 @@ def at_work(
 ) -> Worst:  # fmt: skip
     """Play set-points by controllers some times with a pause, the last time with single faults at some instants."""
     worst, bench = Worst(), Bench(rig, demands, which, rng)
+    alike = demands["current_limit_A"][0] == -demands["current_limit_A"][1]
     bench.start(float(course.display_C[0]))
     levels = bench.follower.levels_of(course, 0.0)
     between = bench.follower.levels_of(course, min(pause_s, 20.0))
@@ -151,15 +163,20 @@ def at_work(
         rows, copies = bench.play(levels if last else between, every=every)
         bench.judge(rows, worst)
     if doses:
+        assert not np.isfinite(bench.off_in_s).any(), "no cut-off acts on a healthy play"
         count = max(1, int((SESSION_S + pause_s) / (len(levels) * bench.period_s + pause_s) + 1e-9))
         worst.doses(*(count * each for each in exposure(rows, np.full(len(rows) - 1, bench.follower.row_s))))
     after, _ = bench.play(np.full(round(10.0 / bench.period_s), course.display_C[-1]))
     bench.judge(after, worst)
     for number, copy in enumerate(copies):
         level = np.full(round(4.0 / bench.period_s), levels[min(number * every, len(levels) - 1)])
-        for fault in range(4):
+        lies_K = float(rng.choice([-8.0, -5.0, -2.0, 1.5, 3.0, 8.0]))
+        for stuck, wrong_K, fault in (
+            (bench.least_A, 0.0, ""), (bench.most_A, 0.0, ""), (None, lies_K, ""), (None, 0.0, "frozen"),
+            (None, 0.0, "swapped"),
+        ):  # fmt: skip
             other = copy.copy()
-            stuck = (other.least_A, other.most_A, None, None)[fault]
-            rows, _ = other.play(level, stuck, wrong_K=float(rng.choice([-8.0, -2.0, 2.0, 8.0])) if fault == 2 else 0.0)
-            other.judge(rows, worst, IN_A_FAULT_K)
+            rows, _ = other.play(level, stuck, wrong_K, fault=fault)
+            # Where the icons need more current of one sign, wires that are swapped in mid-play move the skin too fast.
+            other.judge(rows, worst, IN_A_FAULT_K, rates=fault != "swapped" or alike)
     return worst
