@@ -73,7 +73,7 @@ class AnyLoop:
         """
         driver = self.module.ensemble.rig.driver
         given = limits = driver.current_min_A, driver.current_max_A
-        cold, warm = self._stayed(Stages((cut.low, cut.high), (cut.low, cut.high), (cut.low, cut.high)))
+        cold, warm = self.stayed(Stages((cut.low, cut.high), (cut.low, cut.high), (cut.low, cut.high)))
         warm = replace(warm, nodes_C=np.maximum(cold.nodes_C, warm.nodes_C))
         checks = wide = (*self._swings(cut, given), *self._at_limit(cut, warm, given[1]))
         for _ in range(TRIES):
@@ -160,14 +160,14 @@ class AnyLoop:
         is used.
         """
         narrow_A = narrowed_A(limits_A, used_A)
-        begun = [self._stayed(stages) for stages in every]
+        begun = [self.stayed(stages) for stages in every]
         for reaction, number, within_A in itertools.product(REACTIONS_S, range(len(every)), (limits_A, narrow_A)):
             checks = self._stuck(begun[number], within_A, reaction, may)
             if all(check.passed for check in checks):
                 return CutOff(*every[number].ends_C, reaction), every[number], within_A, checks
         return CutOff(*every[-1].ends_C, 0.0), every[-1], within_A, checks
 
-    def _stayed(self, stages: Stages) -> tuple[State, State]:
+    def stayed(self, stages: Stages) -> tuple[State, State]:
         """Each corner whose display a fault has held at the lower, or the upper, cut-off for as long as that allows."""
         states = []
         for end_C, lasting_C, wrong_K in zip(stages.ends_C, stages.lasting, (-SENSOR_K, SENSOR_K), strict=True):

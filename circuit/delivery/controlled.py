@@ -64,7 +64,7 @@ def _joined(verdict: Gate, proof: LoopProof, number: int, rest_s: float | None) 
         watchdog_s=verdict.demands.watchdog_s,
         rest_before_first_play_s=rest_s,
         pause_at_least_s=shortest_s,
-        zero_current_at_most_s=zero_current_s(ensemble, limits, single.end, dose_min),
+        zero_current_at_most_s=zero_current_s(ensemble, limits, proof.warmest, dose_min),
         faults=(hangs, start, *inside, *proof.demands.faults),
     )
     return replace(

@@ -25,7 +25,7 @@ from ..safety.held import LASTING_S, SENSOR_K, HeldSkin, Span, Stages, around_C,
 from ..safety.polarity import least_fall_K, polarity_check, where_tests_begin
 from ..safety.shown import Stay, healthy_C
 from ..safety.ways_out import with_ways_out_of_set_points
-from ..solver.batch_inputs import Bank, run_regulate
+from ..solver.batch_inputs import Bank, State, run_regulate
 from ..solver.kernel_regulate import DELAY_S, KD, KI, KP, LAG_S
 from ..solver.network import ALPHA, COLD_J_PER_K, HIGHEST_A, LOWEST_A, RESISTANCE
 from .any_loop import BEYONDS_K, AnyLoop, Limits_A, narrowed_A
@@ -49,13 +49,15 @@ SETTLING_S, SWING_K = 10.0, 0.2
 class LoopProof:
     """What was proven of every loop around a module for some deliveries: demands on it, and the checks that fail.
 
-    `drives` are the currents of each delivery, `dose_min` what a display adds that a fault holds inside the cut-offs.
+    `drives` are the currents of each delivery, `dose_min` what a display adds that a fault holds inside the cut-offs,
+    and `warmest` the state in which it leaves each corner.
     """
 
     module: FollowingModule
     drives: list[LaneDrives]
     unpowered_C: Span
     dose_min: float
+    warmest: State
     demands: Demands
     failed: tuple[Check, ...]
 
@@ -83,7 +85,8 @@ class LoopProof:
             pause_at_least_s=None, zero_current_at_most_s=None, faults=(lost,), held_cut_off_display_C=stages.held,
             current_limit_A=limits_A, loop=loop,
         )  # fmt: skip
-        return LoopProof(module, drives, unpowered_C, skin.worst_dose_min(stages), demands, failed)
+        _, warmest = loops.stayed(stages)
+        return LoopProof(module, drives, unpowered_C, skin.worst_dose_min(stages), warmest, demands, failed)
 
     @property
     def inside(self) -> tuple[SingleFault, ...]:

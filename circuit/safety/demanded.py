@@ -253,7 +253,7 @@ class Search:
             polarity_check=polarity,
             rest_before_first_play_s=rest_s,
             pause_at_least_s=None,
-            zero_current_at_most_s=zero_current_s(faulty.ensemble, self.limits, single.end, dose_min),
+            zero_current_at_most_s=zero_current_s(faulty.ensemble, self.limits, self.beginning.left[0], dose_min),
             faults=(*faults, stuck),
             held_cut_off_display_C=stages.held,
             current_limit_A=slow.limit_A,
@@ -266,7 +266,10 @@ def inside_fault(held: HeldCutOff, cut_off: CutOff) -> SingleFault:
 
 
 def zero_current_s(ensemble: Ensemble, limits: Limits, state: State, dose_before_min: float) -> float | None:
-    """After how long in s contact must end at zero current, since the dose before adds up; None: a session is safe."""
+    """After how long in s contact must end at zero current, since the dose before adds up; None: a session is safe.
+
+    `state` is as warm as a fault or a stop may leave each corner.
+    """
     if not ensemble.ideal:
         return None
     most = next(rule.limit for rule in limits.rules if rule.quantity == DOSE)
