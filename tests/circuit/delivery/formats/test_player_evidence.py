@@ -77,7 +77,7 @@ def test_many_plays_in_one_process(line: str, tmp_path: Path, monkeypatch: pytes
     rng = np.random.default_rng([9, list(LINES).index(line)])
     world, plays, rested = World(line, rng, tmp_path, monkeypatch), 0, False
     free_s, least_s = world.true_s, max(REST_S, PAUSE_S)
-    while plays < (2 * RUNS) // 5:
+    while plays < (4 * RUNS) // 5:
         log, is_aborted = len(world.out), bool(rng.random() < 0.2)
         world.abort_s = world.true_s + float(rng.uniform(0, 40)) if is_aborted else math.inf
         try:
