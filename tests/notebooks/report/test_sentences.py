@@ -7,11 +7,14 @@ import pytest
 
 from thermicon.circuit.fitting.identify import FittedParameter
 from thermicon.circuit.fitting.rig_fit import RigFit
+from thermicon.notebooks.report.blocks import Text
 from thermicon.notebooks.report.choices import choice_lines, goal_lines
 from thermicon.notebooks.report.fit_report import parameter_table
+from thermicon.notebooks.report.pilot_report import pairs
 from thermicon.notebooks.report.plan_report import designs_table
 from thermicon.perception import Goal
 from thermicon.perception.pilot.plan import ExperimentPlan, ExperimentSize
+from thermicon.perception.pilot.prediction import Fit, PairFit
 from thermicon.perception.selection.appraise import Appraisal
 from thermicon.perception.selection.choose import Choice
 from thermicon.perception.selection.goal_result import GoalPartResult, GoalResult
@@ -75,3 +78,10 @@ def test_a_fitted_number_has_the_digits_that_its_interval_takes() -> None:
         item = FittedParameter("a", "a", "", 1.0, value, low, high, True, True)
         (row,) = parameter_table(cast("RigFit", SimpleNamespace(parameters=[item]))).rows
         assert " ".join(cell.text for cell in row[1:3]) == said
+
+
+@pytest.mark.parametrize(("count", "chance"), [(15, "0.8"), (60, "3.0")])
+def test_of_more_pairs_more_lie_outside_their_95_percent_by_chance(count: int, chance: str) -> None:
+    fits = tuple(PairFit("a", "b", 20, 0.3, 0.2, (0.1, 0.25), missed=number < 2) for number in range(count))
+    head = cast("Text", pairs(Fit(0.4, None, (0.7, 0.6, 0.8), (1.2, 1.0, 1.4), fits))[0])
+    assert head.text == f"Pairs outside their predicted 95 % (2 of {count}; about {chance} by chance):"
