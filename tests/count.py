@@ -7,7 +7,7 @@ import ast
 import re
 import tomllib
 from collections import Counter
-from dataclasses import dataclass
+from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
 
@@ -17,32 +17,20 @@ CODE = {"product": (".py", ".py.txt"), "tests": (".py", ".toml", ".csv", ".cue",
 """Endings of what counts: tests with their data, but not the reference data of others."""
 BUDGET = tomllib.loads((ROOT / "tests" / "budget.toml").read_text(encoding="utf-8"))
 FILLERS = {"found", "each", "what", "one", "own", "made", "said"}
-COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 
 
-@dataclass(frozen=True, slots=True)
-class Room:
-    """A folder with the lines and the number of files in it."""
-
-    name: str
-    lines: int
-    files: int
+def _texts(part: str) -> dict[Path, str]:
+    paths = [path for folder in FOLDERS[part] for path in sorted((ROOT / folder).rglob("*")) if path.is_file()]
+    counted = [path for path in paths if path.name.endswith(CODE[part]) and "build" not in path.parts]
+    return {path: path.read_text(encoding="utf-8") for path in counted}
 
 
-def _files(part: str) -> list[Path]:
-    paths = (path for folder in FOLDERS[part] for path in sorted((ROOT / folder).rglob("*")))
-    return [path for path in paths if path.is_file() and path.name.endswith(CODE[part]) and "build" not in path.parts]
-
-
-def rooms(part: str) -> list[Room]:
-    """The rooms of the product or of the tests."""
-    lines: Counter[str] = Counter()
-    files: Counter[str] = Counter()
-    for path in _files(part):
-        room = path.parent.relative_to(ROOT).as_posix()
-        lines[room] += len(path.read_text(encoding="utf-8").splitlines())
-        files[room] += 1
-    return [Room(name, lines[name], files[name]) for name in sorted(lines)]
+def rooms(part: str) -> dict[str, list[int]]:
+    """Lines of each file in the rooms of the product or of the tests."""
+    lines: dict[str, list[int]] = {}
+    for path, text in _texts(part).items():
+        lines.setdefault(path.parent.relative_to(ROOT).as_posix(), []).append(len(text.splitlines()))
+    return dict(sorted(lines.items()))
 
 
 def words_of_docs() -> int:
@@ -51,36 +39,37 @@ def words_of_docs() -> int:
     return sum(bool(re.search(r"\w", word)) for page in pages for word in page.split())
 
 
+def dense(tree: ast.Module) -> Iterator[str]:
+    """What a module counts for in the budget's table of density, and its stored names."""
+    first_line = (ast.get_docstring(tree) or "").partition("\n")[0]
+    if "," in first_line and not re.search(r"\b(and|or)\b", first_line):
+        yield "lists_without_and"
+    packed, starred = set(), []
+    for node in ast.walk(tree):
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name), *_], value=ast.Tuple()):
+                packed.add(name)
+            case ast.Assign(targets=[ast.Tuple(), *_], value=ast.Tuple()):
+                yield "pairs_assigned"
+            case ast.Call(args=arguments):
+                starred += [argument.value for argument in arguments if isinstance(argument, ast.Starred)]
+            case ast.NamedExpr():
+                yield "walrus"
+            case ast.Name(id=name, ctx=ast.Store()):
+                yield "fillers" if name in FILLERS else "names"
+        if len(getattr(node, "generators", ())) > 1:
+            yield "double_comprehensions"
+    yield from ("arguments_packed" for value in starred if isinstance(value, ast.Name) and value.id in packed)
+
+
 def density() -> dict[str, float]:
     """How densely the product is written: rows of the budget's table of this name."""
-    counts = Counter(dict.fromkeys(BUDGET["density"], 0))
-    lines = names = fillers = 0
-    for path in _files("product"):
-        if path.suffix == ".py":
-            text = path.read_text(encoding="utf-8")
-            lines += len(text.splitlines())
-            tree = ast.parse(text)
-            nodes = list(ast.walk(tree))
-            first_line = (ast.get_docstring(tree) or "").partition("\n")[0]
-            counts["lists_without_and"] += "," in first_line and not re.search(r"\b(and|or)\b", first_line)
-            tuples = [node for node in nodes if isinstance(node, ast.Assign) and isinstance(node.value, ast.Tuple)]
-            packed = {node.targets[0].id for node in tuples if isinstance(node.targets[0], ast.Name)}
-            counts["pairs_assigned"] += sum(isinstance(node.targets[0], ast.Tuple) for node in tuples)
-            for node in nodes:
-                if isinstance(node, ast.Call):
-                    starred = [argument.value for argument in node.args if isinstance(argument, ast.Starred)]
-                    counts["arguments_packed"] += sum(getattr(value, "id", None) in packed for value in starred)
-                counts["walrus"] += isinstance(node, ast.NamedExpr)
-                counts["double_comprehensions"] += isinstance(node, COMPREHENSIONS) and len(node.generators) > 1
-                if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
-                    names += 1
-                    fillers += node.id in FILLERS
-    rows = {name: count * 1000 / lines for name, count in counts.items()}
-    return {
-        **rows,
-        "lists_without_and": counts["lists_without_and"],
-        "filler_names_percent": 100 * fillers / names,
-    }
+    texts = [text for path, text in _texts("product").items() if path.suffix == ".py"]
+    counts = Counter(row for text in texts for row in dense(ast.parse(text)))
+    lines = sum(len(text.splitlines()) for text in texts)
+    rows = {name: counts[name] * 1000 / lines for name in BUDGET["density"]}
+    percent = 100 * counts["fillers"] / (counts["names"] + counts["fillers"])
+    return {**rows, "lists_without_and": counts["lists_without_and"], "filler_names_percent": percent}
 
 
 def report(name: str, number: float, budget: float) -> None:
@@ -89,28 +78,17 @@ def report(name: str, number: float, budget: float) -> None:
     print(f"{round(number, 2):10,}  {name}{warning}")
 
 
-def options() -> dict[str, int]:
-    """Number of options of each command; what has no dashes is an argument."""
+def main() -> None:
+    """Print lines, density, words, modules that journeys enter, public names and options."""
+    from test_journeys import SCRIPTS, modules_entered
     from typer.main import get_command
 
     from thermicon.notebooks.cli.main import app
 
-    commands = get_command(app).commands
-    return {
-        name: sum(parameter.opts[0].startswith("-") for parameter in command.params)
-        for name, command in commands.items()
-    }
-
-
-def main() -> None:
-    """Print lines, density, words, modules that journeys enter, public names and options."""
-    from test_journeys import SCRIPTS, modules_entered
-
     for part in FOLDERS:
-        counted = rooms(part)
-        for room in counted:
-            print(f"{room.lines:7,} {room.files:4}  {room.name}")
-        report(part, sum(room.lines for room in counted), BUDGET["lines"][part])
+        for room, lines in rooms(part).items():
+            print(f"{sum(lines):7,} {len(lines):4}  {room}")
+        report(part, sum(map(sum, rooms(part).values())), BUDGET["lines"][part])
     for name, number in density().items():
         report(name, number, BUDGET["density"][name])
     report("words of docs", words_of_docs(), BUDGET["docs_words"])
@@ -118,7 +96,8 @@ def main() -> None:
         report(f"modules entered: {name}", len(modules_entered(name)), BUDGET["journeys"][name])
     for package in ("icons", "circuit", "perception", "notebooks"):
         print(f"{len(import_module(f'thermicon.{package}').__all__):10}  names in thermicon.{package}")
-    print("options:", ", ".join(f"{name} {number}" for name, number in options().items()))
+    for name, command in get_command(app).commands.items():
+        print(f"{sum(one.opts[0].startswith('-') for one in command.params):10}  options of {name}")
 
 
 if __name__ == "__main__":

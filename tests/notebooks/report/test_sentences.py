@@ -1,17 +1,21 @@
 """Sentences of reports: singular counts, goals, choices, the reach of few participants."""
 
-from types import SimpleNamespace
-from typing import cast
+from types import SimpleNamespace as Record
+from typing import Any, cast
 
+import numpy as np
 import pytest
 
 from thermicon.circuit.fitting.identify import FittedParameter
 from thermicon.circuit.fitting.rig_fit import RigFit
+from thermicon.notebooks.report.blocks import Text
 from thermicon.notebooks.report.choices import choice_lines, goal_lines
 from thermicon.notebooks.report.fit_report import parameter_table
+from thermicon.notebooks.report.pilot_report import fit_sentences, measured_sentences, pairs
 from thermicon.notebooks.report.plan_report import designs_table
 from thermicon.perception import Goal
 from thermicon.perception.pilot.plan import ExperimentPlan, ExperimentSize
+from thermicon.perception.pilot.prediction import Fit, PairFit
 from thermicon.perception.selection.appraise import Appraisal
 from thermicon.perception.selection.choose import Choice
 from thermicon.perception.selection.goal_result import GoalPartResult, GoalResult
@@ -73,5 +77,43 @@ def test_a_fitted_number_has_the_digits_that_its_interval_takes() -> None:
         (12345.6, 12342, 12349, "12346 12342 to 12349"),
     ):
         item = FittedParameter("a", "a", "", 1.0, value, low, high, True, True)
-        (row,) = parameter_table(cast("RigFit", SimpleNamespace(parameters=[item]))).rows
+        (row,) = parameter_table(cast("RigFit", Record(parameters=[item]))).rows
         assert " ".join(cell.text for cell in row[1:3]) == said
+
+
+@pytest.mark.parametrize(("count", "chance"), [(15, "0.8"), (60, "3.0")])
+def test_of_more_pairs_more_lie_outside_their_95_percent_by_chance(count: int, chance: str) -> None:
+    fits = tuple(PairFit("a", "b", 20, 0.3, 0.2, (0.1, 0.25), missed=number < 2) for number in range(count))
+    head = cast("Text", pairs(Fit(0.4, None, (0.7, 0.6, 0.8), (1.2, 1.0, 1.4), fits))[0])
+    assert head.text == f"Pairs outside their predicted 95 % (2 of {count}; about {chance} by chance):"
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "count", "said"),
+    [
+        (0.0099, 0.4, 20, "p = under 0.01 before, 0.40 after the answers were used: the prediction missed"),
+        (0.01, 0.4, 20, "p = 0.01 before"),
+        (0.0499, 0.4, 20, "the prediction missed, but laboratories that the evidence allows explain the answers"),
+        (0.05, 0.0499, 20, "the model cannot explain these answers, not even with other constants"),
+        (0.05, 0.05, 20, "the answers are near the limit of what the prediction allows"),
+        (0.0999, 0.4, 20, "the answers are near the limit of what the prediction allows"),
+        (0.1, 0.4, 20, "the answers are what the prediction allows"),
+        (0.01, 0.4, 19, "19 answers are too few to judge the model by; 20 or more can"),
+    ],
+)
+def test_answers_are_judged_by_how_many_and_how_likely_they_are(
+    before: float, after: float, count: int, said: str
+) -> None:
+    counts = np.array([[count - 2, 0], [2, 0]])
+    data = Record(trials=Record(pooled=counts, counts=counts), pooled=Record(unanswered=0, information_bits_plugin=0.0))
+    fits = {
+        name: Fit(p, None, (0.7, 0.6, 0.8), (1.2, 1.0, 1.4), ()) for name, p in (("fit", before), ("fit_after", after))
+    }
+    assert said in fit_sentences(cast("Any", Record(data=data, conditioned=Record(after=[0] * 100), **fits)))[1]
+
+
+@pytest.mark.parametrize(("total", "said"), [(5, "5 values are too few to judge"), (6, "what the prediction allows")])
+def test_six_values_are_enough_to_judge_the_model_by(total: int, said: str) -> None:
+    data, fit = Record(measurements=Record(total=total, assumed_errors=0, conditions=())), Record(p=0.4, conditions=())
+    found = Record(data=data, fit=fit, fit_after=fit, conditioned=Record(after=[0] * 100))
+    assert said in measured_sentences(cast("Any", found))[-1]
