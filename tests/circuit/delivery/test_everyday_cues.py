@@ -96,8 +96,6 @@ def test_every_everyday_step_is_exported_on_the_default_rig(rig: str, device: st
     marks = {case.column: case.mark for case in steps_on(rig, device)}
     if device != "qst-tcs2":  # an open loop may take the display to 45 °C on the way, where a stuck driver may leave it
         assert marks.pop("skin +6 K") == "not safe"
-    if device.startswith("pwm"):  # heats with its peak: the display reaches 42.2 °C, and may stay at 41.97
-        assert marks.pop("display +6 K") == "not safe"
     assert set(marks.values()) == {"yes"}
 
 
