@@ -85,18 +85,19 @@ class AnyLoop:
             limits = -_whole_A(-limits[0] / max(1.0, warming)), _whole_A(limits[1] / max(1.0, cooling, hot))
             checks = (*self._swings(cut, limits), *self._at_limit(cut, warm, limits[1]))
         alike_A = min(-limits[0], limits[1])
-        if alike_A < max(-limits[0], limits[1]) and self._suffices((-alike_A, alike_A), given, plays):
+        shown = [self._shown(play, given) for play in plays]
+        if alike_A < max(-limits[0], limits[1]) and self._suffices((-alike_A, alike_A), plays, shown):
             return (-alike_A, alike_A), checks
-        if self._suffices(limits, given, plays):
+        if self._suffices(limits, plays, shown):
             return limits, checks
         cure = f", as its set-points need; a driver.current_limit_A of {min(-limits[0], limits[1]):g} A slows them"
         return given, tuple(replace(check, run=replace(check.run, way=f"{check.run.way}{cure}")) for check in wide)
 
-    def _suffices(self, limits_A: Limits_A, given_A: Limits_A, plays: Sequence[Samples]) -> bool:
-        """Whether set-points are followed as well within limits as within the driver's own."""
+    def _suffices(self, limits_A: Limits_A, plays: Sequence[Samples], shown: Sequence[Array]) -> bool:
+        """Whether set-points are followed as well within limits as they are `shown` within the driver's own."""
         loss_K = loss_limit("receptor difference")
-        for play in plays:
-            slower_K = self._shown(play, limits_A) - self._shown(play, given_A)
+        for play, as_given in zip(plays, shown, strict=True):
+            slower_K = self._shown(play, limits_A) - as_given
             if float(np.sqrt(np.mean(slower_K**2))) > loss_K:
                 return False
         return True

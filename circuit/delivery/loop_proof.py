@@ -115,7 +115,7 @@ def _beyond_s(course: DisplayCourse, inside_C: Span) -> float:
     return stay.beyond_s
 
 
-def _from_no_power_s(loops: AnyLoop, bank: Bank, play: Samples, inside_C: Span) -> float:
+def _from_no_power_s(loops: AnyLoop, bank: Bank, baseline_C: float, inside_C: Span) -> float:
     """For how long in s the weakest loop leaves a display that was without power beyond temperatures."""
     ensemble = loops.module.ensemble
     own, period = ensemble.rig.controller, 1.0 / ensemble.rig.driver.update_Hz
@@ -125,7 +125,7 @@ def _from_no_power_s(loops: AnyLoop, bank: Bank, play: Samples, inside_C: Span) 
     gains[:, [KP, KI, KD]] = np.outer(ensemble.gain, weakest)
     gains[:, LAG_S] = own.lag_s
     times_s: Array = period * np.arange(round(TAKEN_OVER_S / period), dtype=np.float64)
-    goals = np.full((1, len(times_s)), float(play.command[0]))
+    goals = np.full((1, len(times_s)), baseline_C)
     lanes, begun = ensemble.lanes, ensemble.at_rest(0.0).nodes_C
     none = np.zeros_like(lanes)
     _, display, _ = run_regulate(bank, lanes, none, period, goals, gains, np.zeros(len(lanes)), begun.copy())
@@ -144,16 +144,14 @@ def _stages(
 ) -> list[Stages]:
     """Cut-offs around what displays reach, the farther ones first: one each where that suffices, else two."""
     limits, lasting = loops.module.ensemble.rig.limits, skin.lasting_C()
+    single = [one_stage(limits, reach_C, lasting, beyond_K) for beyond_K in BEYONDS_K]
+    if not single[0].failed:  # what fails does not depend on how far beyond a cut-off acts
+        return single
     inside, weakest = healthy_C(lasting), loops.within(narrow_A)
+    baselines_C = {float(play.command[0]) for play in plays}
     stays_s = [_beyond_s(course, inside) for course in courses]
-    stays_s += [_from_no_power_s(loops, weakest, play, inside) for play in plays]
-    every = []
-    for beyond_K in BEYONDS_K:
-        stages = one_stage(limits, reach_C, lasting, beyond_K)
-        if stages.failed:
-            stages = two_stages(limits, skin, reach_C, lasting, max(stays_s), beyond_K)
-        every.append(stages)
-    return every
+    stays_s += [_from_no_power_s(loops, weakest, baseline_C, inside) for baseline_C in baselines_C]
+    return [two_stages(limits, skin, reach_C, lasting, max(stays_s), beyond_K) for beyond_K in BEYONDS_K]
 
 
 def _with_ways_out(stages: Stages, skin: HeldSkin, deliveries: Sequence[DeliveredDrive]) -> tuple[Check, ...]:

@@ -53,6 +53,11 @@ class Rule:
         return self.unit == "K"
 
     @property
+    def always_hard(self) -> bool:
+        """Whether it is hard at any instant: not from where a run began, nor for a time that a display is warm."""
+        return self.severity == "hard" and not self.relative and self.above_C is None
+
+    @property
     def loosened(self) -> bool:
         """Whether it lets more pass than the shipped limit."""
         return self.limit > self.shipped if self.upper else self.limit < self.shipped

@@ -213,8 +213,7 @@ class Search:
         resting = found_at_rest(self.faulty(pause_s)[0], stages.ends_C)
         found = []
         for number, one in enumerate(in_plays):
-            demands = replace(self._demands(number, one, resting, stages, rest_s), pause_at_least_s=said_s)
-            found.append((demands, failed))
+            found.append((self._demands(number, one, resting, stages, rest_s, said_s), failed))
         return found
 
     def _as_given_C(self) -> Span:
@@ -231,8 +230,9 @@ class Search:
         resting: tuple[CutOff, SingleFault],
         stages: Stages,
         rest_s: float | None,
+        pause_s: float | None,
     ) -> Demands:
-        """Demands of a drive on the hardware, with the rest before a first play."""
+        """Demands of a drive on the hardware, with the rest before a first play and the pause after any."""
         single, faulty = self.singles[number], self.faults[number]
         cut_off, stuck = min((in_plays.cut_off, in_plays.stuck), resting, key=lambda each: each[0].react_within_s)
         polarity, swapped = polarity_check(faulty, self.fall_K)
@@ -252,7 +252,7 @@ class Search:
             cut_off_display_C=cut_off,
             polarity_check=polarity,
             rest_before_first_play_s=rest_s,
-            pause_at_least_s=None,
+            pause_at_least_s=pause_s,
             zero_current_at_most_s=zero_current_s(faulty.ensemble, self.limits, self.beginning.left[0], dose_min),
             faults=(*faults, stuck),
             held_cut_off_display_C=stages.held,

@@ -298,7 +298,7 @@ def for_good_C(corners: Sequence[SkinModes], limits: Limits) -> Span:
         at_0, at_1 = (modes.relax(np.zeros(1), level, modes.steady(level))[:, 0] for level in (0.0, 1.0))
         for rule in limits.rules:
             column = COLUMN_OF.get(rule.quantity, "")
-            if rule.severity == "hard" and not rule.relative and rule.above_C is None and column in FELT_COLUMNS:
+            if rule.always_hard and column in FELT_COLUMNS:
                 row = FELT.index(column)
                 side = -INSIDE_K if rule.upper else INSIDE_K
                 level = float((rule.limit + side - at_0[row]) / (at_1[row] - at_0[row]))

@@ -39,8 +39,7 @@ class FaultLimits:
         most = dose.limit if dose.bound is None else dose.bound
         before_min = min(dose_before_min, dose.limit)  # more is refused for itself
         dose_min = min(DOSE_SHARE * dose.limit, most - before_min)
-        hard = (rule for rule in limits.rules if rule.severity == "hard" and not rule.relative and rule.above_C is None)
-        wider = [_widened(rule) for rule in hard if rule.quantity in COLUMN_OF]
+        wider = [_widened(rule) for rule in limits.rules if rule.always_hard and rule.quantity in COLUMN_OF]
         return FaultLimits(replace(limits, rules=(*wider, replace(dose, limit=dose_min))), dose_min)
 
     @property

@@ -164,8 +164,7 @@ def _farthest(begin_C: float, side: float, endures: Callable[[float], bool]) -> 
 
 def around_C(limits: Limits, display_C: Span, held: Span = (-math.inf, math.inf), beyond_K: float = BEYOND_K) -> Span:
     """Where a cut-off acts that lets the display pass between temperatures in °C, and stay at none outside `held`."""
-    hard = [rule for rule in limits.rules if rule.quantity == "display" and rule.severity == "hard"]
-    limit = {rule.upper: rule.limit for rule in hard if rule.above_C is None}
+    limit = {rule.upper: rule.limit for rule in limits.rules if rule.quantity == "display" and rule.always_hard}
     low = max(limit[False], display_C[0] - beyond_K, held[0])
     high = min(limit[True], display_C[1] + beyond_K, held[1])
     return inwards(low, high)

@@ -103,25 +103,22 @@ def demands_text(gates: Sequence[Named]) -> str:
     from thermicon.circuit.safety.demands import Demands
 
     every = [(name, gate.demands) for name, gate in gates]
-    cut = [one.cut_off_display_C for _, one in every]
-    low, high = max(one.low for one in cut), min(one.high for one in cut)
-    within = min(one.react_within_s for one in cut)
+    together = Demands.strictest([one for _, one in every])
+    cut, held, loop = together.cut_off_display_C, together.held_cut_off_display_C, together.loop
     hangs = [name for name, one in every if not one.watchdog_s]
     parts = [f"watchdog {_strictest(every, lambda one: one.watchdog_s)}"]
     if hangs:
         whose = _of(_names(hangs), len(hangs) < len(every))
         parts = [f"a current that cannot hang{whose}, for which no watchdog is quick enough"]
-    loop = every[0][1].loop  # of set-points: one for all icons
     sensor = "the measured display" if loop is None else "a second sensor of the display"
-    if within >= QUICKEST_S:
-        parts.append(f"cut-off outside {number(low, 1)} … {number(high, 1)} °C on {sensor} within {within:g} s")
-    held = Demands.strictest([one for _, one in every]).held_cut_off_display_C
-    if held is not None and within >= QUICKEST_S:
+    if cut.react_within_s >= QUICKEST_S:
+        outside = f"{number(cut.low, 1)} … {number(cut.high, 1)} °C"
+        parts.append(f"cut-off outside {outside} on {sensor} within {cut.react_within_s:g} s")
+    if held is not None and cut.react_within_s >= QUICKEST_S:
         outside = f"{number(held.low, 1)} … {number(held.high, 1)} °C"
         parts.append(f"and where it is outside {outside} for longer than {held.longer_than_s:g} s with current")
-    limits = [one.current_limit_A for _, one in every if one.current_limit_A is not None]
-    if limits:
-        least, most = max(low for low, _ in limits), min(high for _, high in limits)
+    if together.current_limit_A is not None:
+        least, most = together.current_limit_A
         span = f"{signed(least, 'g')} … {most:g} A"
         parts.append(f"a driver limited to {span} by itself" if loop is None else f"a controller limited to {span}")
     if loop is not None:
@@ -132,7 +129,7 @@ def demands_text(gates: Sequence[Named]) -> str:
             f"{loop.sensor_lag_at_most_s:g} s, is wrong by {loop.sensor_offset_at_most_K:g} K and is acted on "
             f"{loop.delay_at_most_s:g} s later at most"
         )
-    if any(one.polarity_check is not None and one.polarity_check.needed for _, one in every):
+    if together.test is not None:
         parts.append("polarity check before the first play")
     unrested = [name for name, one in every if one.rest_before_first_play_s is None]
     if unrested:

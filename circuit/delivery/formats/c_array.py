@@ -164,7 +164,7 @@ def player_files(drives: Sequence[Played], demands: Demands) -> dict[str, bytes]
         "OUTPUT_UNIT": OUTPUT_UNITS[first.device.driven_by],
         "VERDICTS": "\n".join(f"   {played.file}: {played.verdict}." for played in drives),
     }
-    together = b"".join(write(each.delivery) for each in drives) + filled(PLAYER, numbers)
+    together = b"".join(each.content for each in drives) + filled(PLAYER, numbers)
     return {PLAYER: filled(PLAYER, {**numbers, "DIGEST": sha256(together).hexdigest()[:DIGITS]})}
 
 

@@ -4,7 +4,6 @@ import csv
 import hashlib
 import io
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ import pytest
 
 from tests.circuit.daq import Daq
 from tests.circuit.delivery.one_drive import prepare
+from tests.circuit.play.bench import Clock
 from tests.circuit.serial_line import Serial
 from tests.circuit.verdicts import MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig
@@ -23,26 +23,6 @@ from thermicon.icons import Icon, load_library
 
 RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})
 ICON = load_library("six-icons")["double-dip"]
-
-
-class Clock:
-    """Time that passes only in sleep."""
-
-    def __init__(self) -> None:
-        self.now = 100.0
-        self.events: list[Callable[[], None]] = []
-
-    def monotonic(self) -> float:
-        return self.now
-
-    def passes(self, seconds: float) -> None:
-        self.now += seconds
-
-    def sleep(self, seconds: float) -> None:
-        assert seconds > 0
-        self.now += seconds
-        for event in self.events:
-            event()
 
 
 class Bench:
@@ -94,20 +74,10 @@ class Bench:
         """A display that goes where it is predicted to go, after the rest of 30 s."""
         display = self.ready.delivery.trace
         return (
-            float(np.interp(self.clock.now - 130.0 - later_s, display.time_s, display.display_C))
+            float(np.interp(self.clock.true_s - 130.0 - later_s, display.time_s, display.display_C))
             + self.measured()
             - 32.0
         )
-
-    def at(self, time_s: float, strikes: Callable[[], None]) -> None:
-        """What happens once, later."""
-
-        def event() -> None:
-            if self.clock.now > time_s:
-                self.clock.events.clear()
-                strikes()
-
-        self.clock.events.append(event)
 
     def cools(self, sign: float = 1.0) -> None:
         """The display goes with the last voltage: above rest it cools."""

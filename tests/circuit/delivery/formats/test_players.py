@@ -42,13 +42,13 @@ class TestVolts:
         commands = [float(row["command_V"]) for row in ni.rows()]
         assert ni.daq.out == [commands[0], commands]
         assert (ni.daq.rate, ni.daq.count) == (pytest.approx(100.0), len(commands))
-        assert ni.clock.now == pytest.approx(100.0 + 30.0 + 8.02, abs=0.1)
+        assert ni.clock.true_s == pytest.approx(100.0 + 30.0 + 8.02, abs=0.1)
 
     def test_it_refuses_a_play_before_the_pause_is_over(self, ni: Bench) -> None:
         ni.play()
-        ni.clock.now += 5.0
+        ni.clock.true_s += 5.0
         ni.stops(r"the pause of 20 s between plays is not over: wait 15\.0 s more")
-        ni.clock.now += 15.5
+        ni.clock.true_s += 15.5
         ni.play()
         assert len(ni.daq.out) == 3, "the rest is held before the first play alone"
 
@@ -65,7 +65,7 @@ class TestVolts:
         ni.stops(r"stopped before: find out why, then call reset\(\)")
 
     def test_abort_ends_with_zero(self, ni: Bench) -> None:
-        ni.at(132.0, ni.player["abort"])
+        ni.clock.at(132.0, ni.player["abort"])
         ni.stops(r"abort\(\) was called")
         assert (ni.daq.out[-1], ni.daq.stopped) == (0.0, 1)
 
@@ -73,7 +73,7 @@ class TestVolts:
         ni.cools(sign=-1.0)
         ni.stops(r"fell by -\d\.\d\d K at the sensor, not by 0\.15 K, under 0\.2 A that must cool", ni.measured)
         assert ni.daq.out == [0.0, 0.0, 2.0, 0.0]  # off before, then 0.2 A through 0.1 A/V
-        assert ni.clock.now == pytest.approx(100.0 + 10.0 + 0.5, abs=0.1)
+        assert ni.clock.true_s == pytest.approx(100.0 + 10.0 + 0.5, abs=0.1)
         ni.player["reset"]()
         ni.clock.events.clear()
         ni.cools()
@@ -85,7 +85,7 @@ class TestVolts:
     )
     def test_an_interrupt_leaves_no_current(self, ni: Bench, at_s: float) -> None:
         ni.cools()
-        ni.at(at_s, interrupt)
+        ni.clock.at(at_s, interrupt)
         with pytest.raises(KeyboardInterrupt):
             ni.play(ni.measured)
         assert ni.daq.out[-1] == 0.0
@@ -96,7 +96,7 @@ class TestVolts:
         ni.cools()
 
         def reading() -> float:
-            if ni.clock.now > 110.0 + ni.player["TEST_S"] - 1e-9:
+            if ni.clock.true_s > 110.0 + ni.player["TEST_S"] - 1e-9:
                 return last if last is not None else 1 / 0
             return ni.measured()
 
@@ -133,7 +133,7 @@ class TestVolts:
         thinned = load_format("csv").write(fast.ready.delivery)
         Path(fast.path).write_bytes(thinned)
         fast.rejudge()
-        fast.clock.now += 100.0
+        fast.clock.true_s += 100.0
         fast.stops(
             r"row \d+: at \d\.\d+ s, where rows at one rate from 0 s on have .* give a drive with a row for each"
         )
@@ -166,7 +166,7 @@ class TestVolts:
         ni = bench(Device.load("ni-analogue-output"), rest_before_first_play_s=2.0, pause_at_least_s=20.5)
         ni.play()
         assert ni.daq.ends - 8.02 == pytest.approx(100.0 + 20.5, abs=0.01)
-        ni.clock.now += 1.0
+        ni.clock.true_s += 1.0
         ni.player["abort"]()
         ni.player["reset"]()
         ni.play()
@@ -193,12 +193,12 @@ class TestVolts:
         display = ni.ready.delivery.trace
 
         def reading() -> float:
-            since = ni.clock.now - (ni.daq.ends - 8.02)
+            since = ni.clock.true_s - (ni.daq.ends - 8.02)
             return step_K * round(float(np.interp(since, display.time_s, display.display_C)) / step_K)
 
         for _ in range(3):
             ni.play(reading)
-            ni.clock.now += 20.0
+            ni.clock.true_s += 20.0
 
     def test_the_cut_off_acts_on_either_sensor(self, ni: Bench) -> None:
         ni.player["TEST_POLARITY"] = False
@@ -221,20 +221,20 @@ class TestThermode:
         assert b"L" not in tcs.sent
         tcs.player["play"](tcs.port)
         assert tcs.sent == tcs.files[tcs.drive].split()
-        assert tcs.clock.now == pytest.approx(130.0, abs=0.02)  # with 0.01 s of line
+        assert tcs.clock.true_s == pytest.approx(130.0, abs=0.02)  # with 0.01 s of line
         with pytest.raises(RuntimeError, match=r"wait 28\.0 s more"):  # 8 s of icon and 20 s of pause
             tcs.player["play"](tcs.port)
 
     def test_after_a_reset_the_rest_is_held_again(self, tcs: Bench) -> None:
         tcs.player["prepare"](tcs.port, tcs.path)
         tcs.player["play"](tcs.port)
-        tcs.clock.now += 3.0
+        tcs.clock.true_s += 3.0
         tcs.player["abort"]()
         assert tcs.sent[-1] == b"A", "nobody watches this play"
         tcs.player["reset"]()
-        began = tcs.clock.now
+        began = tcs.clock.true_s
         tcs.player["play"](tcs.port)
-        assert tcs.clock.now == pytest.approx(began + 30.0, abs=1e-3)
+        assert tcs.clock.true_s == pytest.approx(began + 30.0, abs=1e-3)
 
     def test_a_profile_that_ends_early_is_not_sent(self, tcs: Bench) -> None:
         Path(tcs.path).write_bytes(tcs.files[tcs.drive][:-9])
@@ -270,7 +270,7 @@ class TestSetpoints:
     def test_rows_are_sent_at_their_times(self, bench: Callable[..., Bench]) -> None:
         loop = bench(self.LOOP)
         sent: list[tuple[float, float]] = []
-        loop.play(lambda level: sent.append((loop.clock.now, level)), lambda: None)
+        loop.play(lambda level: sent.append((loop.clock.true_s, level)), lambda: None)
         rows = loop.rows()
         assert [level for _, level in sent[1:]] == [float(row["display_C"]) for row in rows]
         late = [at - 130.0 - float(row["time_s"]) for (at, _), row in zip(sent[1:], rows, strict=True)]
@@ -280,7 +280,7 @@ class TestSetpoints:
         loop = bench(self.LOOP)
         off: list[float] = []
         loop.reading = 45.0
-        loop.stops("outside 20 to 40", lambda _: None, lambda: off.append(loop.clock.now), loop.measured)
+        loop.stops("outside 20 to 40", lambda _: None, lambda: off.append(loop.clock.true_s), loop.measured)
         assert off
 
     def test_a_computer_that_hangs_for_longer_than_may_be_ends_it(self, bench: Callable[..., Bench]) -> None:
@@ -288,9 +288,9 @@ class TestSetpoints:
         sent: list[float] = []
 
         def hangs() -> None:
-            loop.clock.now += 0.15
+            loop.clock.true_s += 0.15
 
-        loop.at(132.0, hangs)
+        loop.clock.at(132.0, hangs)
         loop.stops(r"late by 0\.1\d s", sent.append, lambda: sent.append(-1.0))
         assert sent[-1] == -1.0
 
@@ -299,9 +299,9 @@ class TestSetpoints:
         with pytest.warns(UserWarning, match="needs a second sensor: give its function as second_C") as told:
             loop.play(lambda _: None, lambda: None, loop.follows)
         assert len(told) == 1
-        loop.clock.now += 100.0
+        loop.clock.true_s += 100.0
         with warnings.catch_warnings(action="error"):
-            began_s = loop.clock.now - 130.0
+            began_s = loop.clock.true_s - 130.0
             loop.play(lambda _: None, lambda: None, *[lambda: loop.follows(began_s)] * 2)
 
     def test_as_a_voltage_off_is_the_rest(self, bench: Callable[..., Bench]) -> None:
@@ -309,6 +309,6 @@ class TestSetpoints:
         volts = bench(changed(gain, "set-point offset", "V", value=-2.0))
         commands = [float(row["command_V"]) for row in volts.rows()]
         assert commands[0] == pytest.approx(0.1 * 32.0 - 2.0)
-        volts.at(132.0, volts.player["abort"])
+        volts.clock.at(132.0, volts.player["abort"])
         volts.stops(r"abort\(\) was called")
         assert volts.daq.out[-1] == pytest.approx(commands[0])
