@@ -89,9 +89,9 @@ def test_a_session_beyond_its_dose_is_refused(tmp_path: Path, cli: Cli) -> None:
     """In the short session of this rig no drive is too much by itself; in the whole order of play they are."""
     rules = (
         "'safety.reason=\"the session of the test lasts one minute\"', 'safety.session_min=1', "
-        "'safety.thermal_dose_min_CEM43=0.05', "
+        "'safety.thermal_dose_min_CEM43=0.2', "
     )
-    text = HOT.replace("rig_changes = [", f"rig_changes = [{rules}").replace("repetitions = 2", "repetitions = 5")
+    text = HOT.replace("rig_changes = [", f"rig_changes = [{rules}").replace("repetitions = 2", "repetitions = 14")
     text = text.replace("gap_s = 10", "gap_s = 170")
     said = refused(cli, tmp_path, text)
     assert "refused: session of participant A: NOT SAFE: " in said
