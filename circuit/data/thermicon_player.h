@@ -6,7 +6,7 @@
    THERMICON_HELD_HIGH_C for too long, a sensor is lost or frozen, two sensors disagree, a loop leaves its course, the
    host has not called thermicon_feed() for THERMICON_WATCHDOG_S, this loop is late, its clock stands still, or
    thermicon_abort() was called; only thermicon_begin() leaves a fault. It does not replace a cut-off that works without
-   software.
+   software. An interrupt may call thermicon_abort(), if it may call put_out, and thermicon_feed(); nothing else.
 
        thermicon_player player;
        thermicon_begin(&player, &board, THERMICON_ICON(cooling_step));   off, polarity test, then rest and pause
@@ -156,6 +156,7 @@ typedef struct {
     float before_C, late_C, goal, integral; /* late_C: the first sensor's, THERMICON_LAG_S late */
     thermicon_sensor first, second;
     uint8_t has_stepped, has_played, marked;
+    volatile uint8_t aborted, fed; /* set by an interrupt, which may come in the middle of a step */
 } thermicon_player;
 
 /* Whole microseconds of a time in s, exact to one also where a double has 32 bits. */
@@ -192,11 +193,14 @@ static inline void thermicon_stop(thermicon_player *player, thermicon_fault faul
     player->state = THERMICON_STOPPED;
 }
 
-/* Zero output at once, for good. */
-static inline void thermicon_abort(thermicon_player *player) { thermicon_stop(player, THERMICON_ABORTED); }
+/* Zero output at once, for good; a step that it interrupts, or the next one, tells it as a fault. */
+static inline void thermicon_abort(thermicon_player *player) {
+    player->aborted = 1;
+    player->board->put_out(player->board->context, 0.0f);
+}
 
 /* The host is alive; call it from what the host sends, never from a timer of this board. */
-static inline void thermicon_feed(thermicon_player *player) { player->fed_us = player->now_us; }
+static inline void thermicon_feed(thermicon_player *player) { player->fed = 1; }
 
 /* Begin at zero output: after a time off the polarity is tested, then the rest of the icon is held. */
 static inline thermicon_answer thermicon_begin(thermicon_player *player, const thermicon_board *board,
@@ -224,7 +228,7 @@ static inline thermicon_answer thermicon_begin(thermicon_player *player, const t
    the first play the pause is held too, since nobody knows what played before this board was started. */
 static inline thermicon_answer thermicon_play(thermicon_player *player, thermicon_icon icon) {
     uint64_t held_us = player->now_us - player->entered_us;
-    if (player->state == THERMICON_STOPPED) return THERMICON_HAS_STOPPED;
+    if (player->state == THERMICON_STOPPED || player->aborted) return THERMICON_HAS_STOPPED;
     if (player->state == THERMICON_PLAYING) return THERMICON_BUSY;
     if (player->state != THERMICON_RESTING) return THERMICON_NOT_RESTED;
     if (!player->has_played && held_us <= thermicon_us(THERMICON_REST_S)) return THERMICON_NOT_RESTED;
@@ -361,10 +365,13 @@ static inline thermicon_state thermicon_step(thermicon_player *player) {
     const thermicon_board *board = player->board;
     uint32_t elapsed, place;
     float out;
+    if (player->aborted) thermicon_stop(player, THERMICON_ABORTED);
     if (player->state == THERMICON_STOPPED) {
         board->put_out(board->context, 0.0f);
         return player->state;
     }
+    if (player->fed) player->fed_us = player->now_us;
+    player->fed = 0;
     elapsed = thermicon_elapsed(player);
     if (player->now_us - player->fed_us > thermicon_us(THERMICON_WATCHDOG_S) ||
         player->now_us - player->fed_us > thermicon_us(THERMICON_JUDGED_WATCHDOG_S))
@@ -385,6 +392,7 @@ static inline thermicon_state thermicon_step(thermicon_player *player) {
         out = thermicon_regulate(player, 1e-6f * (float)elapsed);
     board->put_out(board->context, out);
     thermicon_mark(player, player->state == THERMICON_PLAYING);
+    if (player->aborted) thermicon_stop(player, THERMICON_ABORTED); /* its zero may have come before `out` */
     return player->state;
 }
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 
 class FunctionLine:
-    """`send` takes a set-point in °C, `off` switches the controller's output off, `measured_C` returns °C.
+    """`send` takes a set-point in °C, `off` switches the controller's output off.
 
     `test` puts out a current in A, above 0 to cool; `feed` tells the controller that this computer is alive.
     """
@@ -15,11 +15,10 @@ class FunctionLine:
         self,
         send: Callable[[float], object],
         off: Callable[[], object],
-        measured_C: Callable[[], float] | None = None,
         test: Callable[[float], object] | None = None,
         feed: Callable[[], object] | None = None,
     ) -> None:
-        self._send, self._off, self._measured_C, self._test, self._feed = send, off, measured_C, test, feed
+        self._send, self._off, self._test, self._feed = send, off, test, feed
 
     def open(self) -> None:
         """Nothing to do: the user's functions are ready."""
@@ -38,10 +37,6 @@ class FunctionLine:
         """Call the function of the user, where there is one."""
         if self._feed is not None:
             self._feed()
-
-    def read(self) -> float | None:
-        """Ask the function of the user."""
-        return None if self._measured_C is None else float(self._measured_C())
 
     def status(self) -> Mapping[str, object]:
         """Functions of the user say nothing."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from .steps import NOTHING_S, Steps
+from .steps import NOTHING_S, Sensors, Steps
 from .watch import SLOWEST_PART, Numbers, Refused, Stopped
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ class Guard(Steps):
     """Plays on a line by a clock in s, and looks at the display meanwhile.
 
     `begin_rest` and `begin_play` say what is to happen in the steps that follow; `rest` and `play` are loops of steps.
-    `numbers` is asked at each use, so that they may be changed. What stopped refuses everything until `reset`. With a
-    second sensor, a function that returns °C, cut-offs act on both.
+    `numbers` is asked at each use, so that they may be changed. What stopped refuses everything until `reset`. Sensors
+    are functions that return the °C of the display; cut-offs act on both. One that was given is read until `reset`.
     """
 
     def reset(self) -> None:
@@ -33,12 +33,12 @@ class Guard(Steps):
 
     def prepare(self, line: Line, rows: Sequence[Any]) -> None:
         """Send rows that begin nothing; the rest counts from their end, since the device holds its baseline then."""
-        self._begin(line, self._second_C, self._preparing(rows), pause_s=0.0)
+        self._begin(line, (None, None), self._preparing(rows), pause_s=0.0)
         self._run()
 
-    def rest(self, line: Line, row: Any, second_C: Callable[[], float] | None = None) -> None:
+    def rest(self, line: Line, row: Any, sensors: Sensors = (None, None)) -> None:
         """Test the polarity and hold a row (None: it is held already) for as long as before a first play."""
-        self.begin_rest(line, row, second_C)
+        self.begin_rest(line, row, sensors)
         self._run()
 
     def play(
@@ -47,19 +47,19 @@ class Guard(Steps):
         rows: Sequence[tuple[float, Any]],
         rest_row: Any,
         expected: Sequence[tuple[float, float]] = (),
-        second_C: Callable[[], float] | None = None,
+        sensors: Sensors = (None, None),
         watch: bool = True,
     ) -> None:
         """Send rows at their times in s, each held until the next; the last one marks the end, None sends nothing.
 
         `expected` are times and the °C that the display then has. Without `watch` it returns after the first row.
         """
-        self.begin_play(line, rows, rest_row, expected, second_C, watch)
+        self.begin_play(line, rows, rest_row, expected, sensors, watch)
         self._run()
 
-    def begin_rest(self, line: Line, row: Any, second_C: Callable[[], float] | None = None) -> None:
+    def begin_rest(self, line: Line, row: Any, sensors: Sensors = (None, None)) -> None:
         """Have the steps that follow do what `rest` does."""
-        self._begin(line, second_C, self._resting(row), self._numbers().pause_s)
+        self._begin(line, sensors, self._resting(row), self._numbers().pause_s)
 
     def begin_play(
         self,
@@ -67,11 +67,11 @@ class Guard(Steps):
         rows: Sequence[tuple[float, Any]],
         rest_row: Any,
         expected: Sequence[tuple[float, float]] = (),
-        second_C: Callable[[], float] | None = None,
+        sensors: Sensors = (None, None),
         watch: bool = True,
     ) -> None:
         """Have the steps that follow do what `play` does."""
-        self._begin(line, second_C, self._playing(rows, rest_row, expected, watch), self._numbers().pause_s)
+        self._begin(line, sensors, self._playing(rows, rest_row, expected, watch), self._numbers().pause_s)
 
     def _preparing(self, rows: Sequence[Any]) -> Iterator[float]:
         for row in rows:
@@ -83,7 +83,7 @@ class Guard(Steps):
     def _resting(self, row: Any) -> Iterator[float]:
         """Hold the rest, and a pause at least: nobody knows what played before this program began or was reset."""
         numbers, self.rested = self._numbers(), False
-        if numbers.second_sensor and self._second_C is None:
+        if numbers.second_sensor and "second sensor" not in self._sensors:
             warnings.warn("a controller's cut-off needs a second sensor: give its function as second_C", stacklevel=2)
         self._watch.expect()
         yield from self._timing_sensors(numbers)
@@ -159,7 +159,7 @@ class Guard(Steps):
                 playing = self._send(row)
         self._watch.expect()
         latest_s = self._now_s + 5.0
-        while playing is not None and playing():
+        while playing is not None and self._still(playing):
             if self._now_s > latest_s:
                 raise Stopped("the device did not end in time")
             yield self._now_s + self._numbers().look_every_s

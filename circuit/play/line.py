@@ -24,9 +24,6 @@ class Line(Protocol):
     def feed(self) -> None:
         """Tell the device that this computer is alive."""
 
-    def read(self) -> float | None:
-        """Return the measured temperature of the display in °C; None where there is no sensor."""
-
     def status(self) -> Mapping[str, object]:
         """Return what the device holds, by name; nothing where it does not say."""
 

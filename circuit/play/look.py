@@ -14,19 +14,19 @@ class SensorLook:
     The guard does not wait for them: a reading that never comes back must not keep the output on.
     """
 
-    def __init__(self, sensors: Mapping[str, Callable[[], float | None]], clock: Callable[[], float]) -> None:
+    def __init__(self, sensors: Mapping[str, Callable[[], float]], clock: Callable[[], float]) -> None:
         self.done = threading.Event()
         self._names = list(sensors)
         self._answers: dict[str, object] = {}
         self._took_s: dict[str, float] = {}
         threading.Thread(target=self._read, args=(sensors, clock), daemon=True).start()
 
-    def _read(self, sensors: Mapping[str, Callable[[], float | None]], clock: Callable[[], float]) -> None:
+    def _read(self, sensors: Mapping[str, Callable[[], float]], clock: Callable[[], float]) -> None:
         for name, read in sensors.items():
             began_s = clock()
             try:
                 self._answers[name] = read()
-            except Exception as problem:  # told where it is judged
+            except BaseException as problem:  # told where it is judged
                 self._answers[name] = problem
             self._took_s[name] = clock() - began_s
         self.done.set()
@@ -44,15 +44,13 @@ class SensorLook:
         return max(took_s.items(), key=lambda taken: taken[1])
 
     def levels_C(self) -> dict[str, float]:
-        """What was read in °C by sensor; a first one that answers None is not there."""
+        """What was read in °C by sensor."""
         levels = {}
         for name, answer in self._answers.items():
-            if answer is None and name == self._names[0]:
-                continue
             try:
-                if isinstance(answer, Exception):
+                if isinstance(answer, BaseException):
                     raise answer
                 levels[name] = float(answer)  # type: ignore[arg-type]
-            except Exception as problem:
-                raise Stopped(f"the {name} is lost ({problem})") from problem
+            except BaseException as problem:
+                raise Stopped(f"the {name} is lost ({str(problem) or type(problem).__name__})") from problem
         return levels

@@ -7,7 +7,7 @@ from typing import Any
 
 
 class NiLine:
-    """A channel of NI-DAQmx; `off_V` leaves the display without power, `measured_C` returns its temperature in °C.
+    """A channel of NI-DAQmx; `off_V` leaves the display without power.
 
     `V_per_A` is the voltage for 1 A of current, 0 where a voltage does not stand for a current. The driver keeps a
     channel for a task that was started, also when it is done, until that is closed: use one line for each channel.
@@ -15,7 +15,6 @@ class NiLine:
 
     def __init__(self, channel: str, off_V: float = 0.0, V_per_A: float = 0.0) -> None:
         self._channel, self._off_V, self._V_per_A = channel, off_V, V_per_A
-        self.measured_C: Callable[[], float] | None = None
         self._daq: Any = None
         self._task: Any = None
 
@@ -53,10 +52,6 @@ class NiLine:
 
     def feed(self) -> None:
         """Nothing to do: an analogue output has no watchdog."""
-
-    def read(self) -> float | None:
-        """Ask the function of the user."""
-        return None if self.measured_C is None else float(self.measured_C())
 
     def status(self) -> Mapping[str, object]:
         """An analogue output says nothing."""

@@ -108,15 +108,9 @@ def _line():
     return _lines.setdefault((CHANNEL, OFF_V, V_PER_A), NiLine(CHANNEL, OFF_V, V_PER_A))
 
 
-def _measured(measured_C):
-    line = _line()
-    line.measured_C = measured_C
-    return line
-
-
 def rest(drive_file, measured_C=None, second_C=None):
 {REST.format("what a drive begins with")}
-    _guard.rest(_measured(measured_C), _rows(drive_file, "command_V")[1][0], second_C)
+    _guard.rest(_line(), _rows(drive_file, "command_V")[1][0], (measured_C, second_C))
 
 
 def play(drive_file, measured_C=None, second_C=None):
@@ -124,7 +118,7 @@ def play(drive_file, measured_C=None, second_C=None):
     times, volts = _rows(drive_file, "command_V")
     rate = (len(times) - 1) / times[-1]
     rows = [(0.0, (volts, rate)), (len(volts) / rate, None)]
-    _guard.play(_measured(measured_C), rows, volts[0], _course(drive_file), second_C)
+    _guard.play(_line(), rows, volts[0], _course(drive_file), (measured_C, second_C))
 
 
 def _off():
@@ -137,8 +131,8 @@ FUNCTION = f'''
 
 def rest(drive_file, send, off, measured_C=None, second_C=None, test=None, feed=None):
 {REST.format("what a drive begins with")}
-    line = FunctionLine(send, off, measured_C, test, feed)
-    _guard.rest(line, _rows(drive_file, "display_C")[1][0], second_C)
+    line = FunctionLine(send, off, test, feed)
+    _guard.rest(line, _rows(drive_file, "display_C")[1][0], (measured_C, second_C))
 
 
 def play(drive_file, send, off, measured_C=None, second_C=None, test=None, feed=None):
@@ -149,8 +143,8 @@ def play(drive_file, send, off, measured_C=None, second_C=None, test=None, feed=
     clock, which may be late by some milliseconds.
     """
     times, levels = _rows(drive_file, "display_C")
-    line = FunctionLine(send, off, measured_C, test, feed)
-    _guard.play(line, list(zip(times, levels)), levels[0], _course(drive_file), second_C)
+    line = FunctionLine(send, off, test, feed)
+    _guard.play(line, list(zip(times, levels)), levels[0], _course(drive_file), (measured_C, second_C))
 '''
 
 TCS2 = f'''
@@ -160,12 +154,6 @@ _lines, _prepared = {{}}, []
 
 def _line(port):
     return _lines.setdefault(id(port), Tcs2Line(port))
-
-
-def _measured(port, measured_C):
-    line = _line(port)
-    line.measured_C = measured_C
-    return line
 
 
 def prepare(port, drive_file):
@@ -182,7 +170,7 @@ def rest(port, measured_C=None, second_C=None):
 {REST.format("the baseline of what was prepared")}
     if not _prepared:
         raise Refused("nothing was prepared: call prepare(port, drive_file) first")
-    _guard.rest(_measured(port, measured_C), None, second_C)
+    _guard.rest(_line(port), None, (measured_C, second_C))
 
 
 def play(port, measured_C=None, second_C=None):
@@ -191,7 +179,7 @@ def play(port, measured_C=None, second_C=None):
         raise Refused("nothing was prepared: call prepare(port, drive_file) first")
     watch = measured_C is not None or second_C is not None
     end_s, course = _prepared
-    _guard.play(_measured(port, measured_C), [(0.0, "L"), (end_s, None)], None, course, second_C, watch)
+    _guard.play(_line(port), [(0.0, "L"), (end_s, None)], None, course, (measured_C, second_C), watch)
 
 
 def connect():

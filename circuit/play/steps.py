@@ -19,6 +19,9 @@ FEED_EVERY_S = 0.2
 BREAK_SEND_S = 0.2  # what waits so long for a send to end goes on without it
 ANSWER_S = 5.0  # of a look that only times the sensors
 
+Sensor = Callable[[], float] | None
+Sensors = tuple[Sensor, Sensor]  # the first and the second one of a display; None: there is none
+
 
 class Steps:
     """Does what a plan yields times for, on a line by a clock in s; one plan at a time.
@@ -35,19 +38,20 @@ class Steps:
         self._turn, self._sending = threading.Lock(), threading.RLock()
         self._watch = Watch(numbers)
         self._line: Line | None = None
-        self._second_C: Callable[[], float] | None = None
         self._plan: Iterator[float] | None = None
+        self._look: SensorLook | None = None
+        self._asked_s = -math.inf
         self._forget()
 
     def _forget(self) -> None:
         self.rested, self.ended_s = False, -math.inf
         self._held_s: float | None = None
         self._now_s, self._stood_s, self._due_s = -math.inf, 0.0, -math.inf
-        self._look: SensorLook | None = None
-        self._asked_s = self._fed_s = -math.inf
+        self._fed_s = -math.inf
+        self._sensors: dict[str, Callable[[], float]] = {}
         self._levels_C: dict[str, float] = {}
         self._look_s, self._slowest = 0.0, ("", 0.0)
-        self._is_timing = self._on = self._is_blind = False
+        self._is_timing = self._on = False
         self._why = ""
         self._watch.forget()
 
@@ -77,25 +81,28 @@ class Steps:
         with self._turn:
             return self._take_step(now_s)
 
-    def _begin(self, line: Line, second_C: Callable[[], float] | None, plan: Iterator[float], pause_s: float) -> None:
+    def _begin(self, line: Line, sensors: Sensors, plan: Iterator[float], pause_s: float) -> None:
+        """Take a plan on, or refuse it; only one that is taken on changes the line and the sensors."""
         with self._turn:
             if self.busy:
                 raise Refused("busy: a rest or a play has not ended; one display plays one drive at a time")
             if self._aborted.is_set():
                 raise Refused("stopped before: find out why, then call reset()")
             line.open()
-            self._line, self._second_C = line, second_C
             try:
                 self._check_clock(float(self._clock()))
-                left_s = self.ended_s + pause_s - self._now_s
-                if left_s > 0 and pause_s > 0:
-                    raise Refused(f"the pause of {pause_s:g} s between plays is not over: wait {left_s:.1f} s more")
             except Stopped as problem:
+                self._line = self._line or line
                 self._fail(problem)
                 raise
+            left_s = self.ended_s + pause_s - self._now_s
+            if left_s > 0 and pause_s > 0:
+                raise Refused(f"the pause of {pause_s:g} s between plays is not over: wait {left_s:.1f} s more")
+            given = {name: read for name, read in zip(("sensor", "second sensor"), sensors, strict=True) if read}
+            self._line, self._sensors = line, self._sensors | given
             if self._look is None or self._look.done.is_set():  # one that hangs still counts
                 self._look, self._asked_s = None, -math.inf
-            self._due_s, self._plan, self._levels_C, self._is_blind = self._now_s, plan, {}, False
+            self._due_s, self._plan, self._levels_C = self._now_s, plan, {}
 
     def _run(self) -> None:
         """Take steps until the plan has ended."""
@@ -109,7 +116,9 @@ class Steps:
                 self._fail(problem)
             raise
         if self._aborted.is_set():
-            raise Stopped(self._why)
+            stopped = Stopped(self._why)
+            self._fail(stopped)
+            raise stopped
 
     def _wait(self, until_s: float) -> None:
         """Wait until a time in s, or until the sensors have answered; a clock that stands still meanwhile stops."""
@@ -145,7 +154,7 @@ class Steps:
             raise
         if self._look is not None:
             return self._asked_s + self._answer_s + 2.0 * NOTHING_S
-        look_s = math.inf if self._is_blind else self._asked_s + self._numbers().look_every_s
+        look_s = self._asked_s + self._numbers().look_every_s if self._sensors else math.inf
         return min(self._due_s if self.busy else math.inf, look_s, self._fed_s + FEED_EVERY_S)
 
     def _check_clock(self, now_s: float) -> None:
@@ -167,7 +176,6 @@ class Steps:
         if look is not None and is_back:
             self._look, self._look_s, self._slowest = None, look.took_s, look.slowest(gap_s)
             self._levels_C = look.levels_C()
-            self._is_blind = not self._levels_C
             if not self.busy:  # between plays nobody promises to call keep() in time
                 gap_s = look.took_s
         is_watched = look is not None or (self._levels_C and self.busy)
@@ -202,19 +210,20 @@ class Steps:
 
     def _ask(self) -> None:
         """Begin a look where one is due."""
-        assert self._line is not None
-        if self._is_blind or self._now_s < self._asked_s + self._numbers().look_every_s - NOTHING_S:
+        if not self._sensors or self._now_s < self._asked_s + self._numbers().look_every_s - NOTHING_S:
             return
-        sensors: dict[str, Callable[[], float | None]] = {"sensor": self._line.read}
-        if self._second_C is not None:
-            sensors["second sensor"] = self._second_C
-        self._asked_s, self._look = self._now_s, SensorLook(sensors, self._clock)
+        self._asked_s, self._look = self._now_s, SensorLook(self._sensors, self._clock)
 
     def _seen(self) -> Generator[float, None, dict[str, float]]:
         """A look that begins now: °C by sensor."""
         self._asked_s = -math.inf
         yield self._now_s
         return self._levels_C
+
+    def _still(self, playing: Callable[[], bool]) -> bool:
+        """Whether the device still plays; what it then closes is closed before off() comes from another thread."""
+        with self._sending:
+            return playing()
 
     def _send(self, row: Any) -> Callable[[], bool] | None:
         """Put out a row; where abort() came meanwhile, the output goes off again."""
@@ -251,5 +260,5 @@ class Steps:
     def _fail(self, problem: BaseException) -> None:
         self._why = self._why or str(problem) or type(problem).__name__
         self._aborted.set()
-        self._plan = self._look = None
+        self._plan = None  # a look goes on: two readings of one sensor must not run at once
         self._put_off()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 TICK_S, STEP_C = 0.01, 0.1
@@ -11,11 +11,10 @@ BREAK_WRITE_S = 0.1
 
 
 class Tcs2Line:
-    """A port that is open; `measured_C` returns the temperature of the display in °C. Use one line for each port."""
+    """A port that is open; use one line for each port."""
 
     def __init__(self, port: Any) -> None:
         self._port = port
-        self.measured_C: Callable[[], float] | None = None
         self._lock, self._left, self._breaks = threading.Lock(), b"", False
 
     def open(self) -> None:
@@ -35,10 +34,6 @@ class Tcs2Line:
 
     def feed(self) -> None:
         """Nothing to do: a profile ends by itself."""
-
-    def read(self) -> float | None:
-        """Ask the function of the user."""
-        return None if self.measured_C is None else float(self.measured_C())
 
     def status(self) -> Mapping[str, object]:
         """The form of its answers is not known."""

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.circuit.daq import Daq, DaqError
+from tests.circuit.daq import Daq, DaqError, Task
 from tests.circuit.play.bench import Clock
 from tests.circuit.serial_line import Ports, Serial
 from thermicon.circuit.play.guard import Guard
@@ -27,7 +27,7 @@ class Card:
     """A guard on a channel of an NI card."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.clock = Clock()
+        self.clock, self.monkeypatch = Clock(), monkeypatch
         self.daq = Daq(self.clock.monotonic)
         monkeypatch.setitem(sys.modules, "nidaqmx", self.daq)
         monkeypatch.setitem(sys.modules, "nidaqmx.constants", self.daq)
@@ -62,6 +62,32 @@ class TestNi:
         card.play()
         card.line.off()
         assert (card.daq.open_tasks, card.daq.out[-1]) == (0, 0.25)
+
+    @pytest.mark.parametrize("close_s", [0.05, 0.4])  # within the time that an abort waits for it, and longer
+    def test_an_abort_while_a_block_is_closed_at_its_end_leaves_it_off(self, card: Card, close_s: float) -> None:
+        """Closing takes a while in a driver, and the channel is reserved until then."""
+        close, problems = Task.close, list[BaseException]()
+
+        def abort() -> None:
+            try:
+                card.guard.abort()
+            except DaqError as problem:
+                problems.append(problem)
+
+        thread = threading.Thread(target=abort)
+
+        def slow(task: Task) -> None:
+            if card.daq.out[-1] == VOLTS and thread.ident is None:
+                thread.start()
+                time.sleep(close_s)
+            close(task)
+
+        card.monkeypatch.setattr(Task, "close", slow)
+        with pytest.raises(Stopped, match=r"abort\(\) was called"):
+            card.play()
+        thread.join(2.0)
+        assert (card.daq.open_tasks, card.daq.out[-1]) == (0, 0.25)
+        assert len(problems) == (close_s > 0.2)
 
     @pytest.mark.parametrize("rows", [[(0.0, ([0.5, 10.1], 1.0)), (2.0, None)], [(0.0, -10.1), (2.0, None)]])
     def test_a_voltage_that_the_driver_refuses_ends_off_and_closed(self, card: Card, rows: Any) -> None:

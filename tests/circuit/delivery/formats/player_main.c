@@ -11,7 +11,8 @@
      repeats its last code when it hangs; a broken wire reads the end of the span, or nothing.
    - micros() ticks in 4 us or more, wraps at 2^32 us and only goes on (Arduino reference); a bad one does not.
    - A pin keeps its level, so that nothing tells it twice; a reset leaves it anywhere, here high.
-   - Functions get the context that the board was given. */
+   - Functions get the context that the board was given.
+   - An interrupt comes between any two instructions: `inside` says in which function it calls thermicon_abort(). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,13 +21,14 @@
 #include "thermicon_player.h"
 
 enum { DT, TURNS, START, TICK, STAND, BACK, BACK_US, LATE, LATE_US, MUTE, BAD, GOOD, KIND, WHICH, LIE_MK, ABORT, BEGIN,
-       SWAP, DRIFT, DRIFT_MK, STEP_MK, SENSORS, OLD, PIN, GAIN, FIRST_MS, SECOND_MS, FIRST_MK, SECOND_MK, COUNT };
+       SWAP, DRIFT, DRIFT_MK, STEP_MK, SENSORS, OLD, PIN, GAIN, FIRST_MS, SECOND_MS, FIRST_MK, SECOND_MK, INSIDE,
+       COUNT };
 static const char *const NAMES[COUNT] = {
     "dt_us", "turns", "start_us", "tick_us", "stand_at", "back_at", "back_us", "late_at", "late_us", "mute_at",
     "bad_at", "good_at", "kind", "which", "lie_mK", "abort_at", "begin_at", "swap_at", "drift_at", "drift_mK",
-    "step_mK", "sensors", "old", "pin", "gain", "first_ms", "second_ms", "first_mK", "second_mK"};
+    "step_mK", "sensors", "old", "pin", "gain", "first_ms", "second_ms", "first_mK", "second_mK", "inside"};
 static double of[COUNT] = {10000, 8000, 0, 4, 1e9, 1e9, 0, 1e9, 0, 1e9, 1e9, 1e9, 0, 3, 30000, 1e9, 1e9,
-                           1e9, 1e9, 0, 0, 3, 0, 1, 1, 100, 100, 0, 0};
+                           1e9, 1e9, 0, 0, 3, 0, 1, 1, 100, 100, 0, 0, 0};
 enum { LOST = 1, FROZEN, NO_NUMBER, LIES, ON_COURSE }; /* kinds; the last one reads the predicted course and lies */
 
 #define MOST 200
@@ -74,10 +76,20 @@ static double course_C(void) {
     return 0.01 * ((1 - part) * thermicon_course_double_dip[before] + part * thermicon_course_double_dip[after]);
 }
 
+enum { LOOP, MEASURE, CLOCK, PUT_OUT, MARK, AFTER }; /* in which function an abort comes */
+static void interrupt(int inside) {
+    static int is_over;
+    if (inside != (int)of[INSIDE] || turn < of[ABORT] || is_over) return;
+    is_over = 1;
+    thermicon_feed(&player);
+    thermicon_abort(&player);
+}
+
 static int measured(void *own, int sensor, float *display_C) {
     int bad = turn >= of[BAD] && turn < of[GOOD] && ((int)of[WHICH] >> sensor & 1), kind = (int)of[KIND];
     double now = kind == ON_COURSE && player.state == THERMICON_PLAYING ? course_C() : felt_C[sensor];
     if (own != &context) broken("a sensor is read with another context");
+    interrupt(MEASURE);
     now += 1e-3 * (of[FIRST_MK + sensor] + (bad && (kind == LIES || kind == ON_COURSE) ? of[LIE_MK] : 0.0));
     now = of[STEP_MK] > 0 ? round(now * 1e3 / of[STEP_MK]) * of[STEP_MK] * 1e-3 : now + (noise = -noise);
     if (bad && kind == FROZEN) now = last_C[sensor];
@@ -92,12 +104,14 @@ static void put_out(void *own, float command) {
     if (!(fabs(command) <= RANGE)) broken("the driver takes no such command");
     if (player.state == THERMICON_TESTING && test_us < 0) test_us = true_us;
     if (command < out || command > out) settle(0);
+    interrupt(PUT_OUT);
     out = command;
 }
 
 static void mark(void *own, int on) {
     if (own != &context) broken("the pin is set with another context");
     if (on == pin) broken("the pin is told its level again");
+    interrupt(MARK);
     pin = on;
     if (on) marks++, marked_us = true_us;
     else if (marks) mark_us += true_us - marked_us;
@@ -107,6 +121,7 @@ static uint32_t now_us(void *own) {
     static double stood;
     double now = of[START] + true_us - (turn >= of[BACK] ? of[BACK_US] : 0.0);
     if (own != &context) broken("the clock is read with another context");
+    interrupt(CLOCK);
     if (turn < of[STAND]) stood = now;
     return (uint32_t)(uint64_t)(floor(stood / of[TICK]) * of[TICK]);
 }
@@ -156,7 +171,7 @@ int main(void) {
         settle(1000);
         if (turn >= of[DRIFT]) x[DISPLAY] += 1e-3 * of[DRIFT_MK];
         if (turn < of[MUTE]) thermicon_feed(&player);
-        if (turn == of[ABORT]) thermicon_abort(&player);
+        interrupt(LOOP);
         if (turn == of[BEGIN]) {
             pin = 1;
             begun = thermicon_begin(&player, &board, icon);
@@ -164,12 +179,15 @@ int main(void) {
         }
         was = player.state;
         thermicon_step(&player);
-        if (player.state == THERMICON_STOPPED && fabs(out) > 0) broken("the output is on after a stop");
+        interrupt(AFTER);
+        if ((player.state == THERMICON_STOPPED || player.aborted) && fabs(out) > 0) broken("it is on after a stop");
+        if (player.aborted && thermicon_play(&player, icon) == THERMICON_OK) broken("it plays after an abort");
         for (k = 0; k < 2; k++) { /* from the last turn that was off to the last one of the test */
             if (was == THERMICON_OFF) fell_K[k] = last_C[k];
             if (was == THERMICON_TESTING && player.state != THERMICON_TESTING) fell_K[k] -= last_C[k];
         }
-        if (was == THERMICON_PLAYING && player.state == THERMICON_PLAYING && !is_drive(true_us - free_us))
+        if (was == THERMICON_PLAYING && player.state == THERMICON_PLAYING && !player.aborted &&
+            !is_drive(true_us - free_us))
             wrong_s += 1e-6 * dt_us;
         if (was == THERMICON_PLAYING && player.state != THERMICON_PLAYING) {
             if (ended < 0) ended = 1e-6 * true_us;

@@ -34,6 +34,11 @@ KINDS: dict[str, tuple[str, dict[str, Any]]] = {
 Story = tuple[int, dict[str, Any]]
 FAULTS: dict[str, Story] = {
     "abort": (ABORTED, {"abort_at": 4600}),
+    "abort in measure": (ABORTED, {"abort_at": 4600, "inside": 1}),
+    "abort in now_us": (ABORTED, {"abort_at": 4600, "inside": 2}),
+    "abort in put_out": (ABORTED, {"abort_at": 4600, "inside": 3}),
+    "abort in mark": (ABORTED, {"abort_at": 4050, "inside": 4}),
+    "abort between a step and a play": (ABORTED, {"abort_at": 4054, "inside": 5}),
     "hang": (SILENT, {"mute_at": 4600}),
     "late": (LATE, {"late_at": 4600, "late_us": 3e5}),
     "lost": (LOST, {"bad_at": 4600, "kind": OPEN}),
