@@ -40,6 +40,7 @@ FAULTS = {
     "stuck inside": fault("stuck inside", held=HELD, cut_off=CUT_OFF),
     "stuck fast, kept": fault("stuck fast", rate=11.6, kept=True, limit_A=(-1.2, 1.2)),
     "stuck fast, needed": fault("stuck fast", rate=10.5, kept=False, limit_A=(-1.29, 1.5)),
+    "swapped fast": fault("swapped fast", rate=13.2, kept=False, limit_A=(-0.8, 1.5)),
     "stuck, nothing": fault("stuck", harms=(), cut_off=NO_CUT_OFF, most_A=1.5, limit_A=None),
     "unpowered, rest": fault("unpowered", finding=SKIN, rest_s=5.0),
     "unpowered, at once": fault("unpowered", finding=None, rest_s=0.0),
@@ -78,7 +79,7 @@ GREEN = Gate("a rig", 8.0, Uncertainty(), Limits.shipped(), 10, (), (), {}, None
 RED = replace(GREEN, checks=(SKIN,), once=(SKIN,))
 AMBER = replace(GREEN, checks=(SOFT,), repeated=replace(REPEATED, checks=(SOFT,)))
 SLOW = replace(MADE_UP, cut_off_display_C=NO_CUT_OFF, faults=(FAULTS["stuck, nothing"],))
-STUCK = replace(SLOW, faults=(FAULTS["stuck fast, needed"], *SLOW.faults))
+STUCK = replace(SLOW, faults=(FAULTS["stuck fast, needed"], FAULTS["swapped fast"], *SLOW.faults))
 NEAR, NEARLY = (replace(SLOW, cut_off_display_C=CutOff(20.0, 40.0, react_s)) for react_s in (0.02, 0.0199))
 LIMITED = replace(SLOW, faults=(FAULTS["stuck, current limit"],))
 STRICT = replace(
@@ -117,7 +118,7 @@ GATE_WORDS = {
     "stuck and stuck fast": lambda m: m.gate_words([ready("a", replace(GREEN, demands=STUCK))]),
     "stuck, two cures": lambda m: m.stuck_text(of(SLOW, LIMITED)),
     "stuck, nearly quick": lambda m: (m.stuck_text(of(NEARLY)), m.stuck_text(of(NEAR)), m.demands_text(of(NEAR))),
-    "stuck fast": lambda m: (m.stuck_fast_text(of(QUICK, FAST)), m.stuck_fast_text(of(QUICK, MADE_UP))),
+    "stuck fast": lambda m: (m.fast_text(of(QUICK, FAST), "stuck fast"), m.fast_text(of(QUICK, MADE_UP), "stuck fast")),
     "repeated, unlike": lambda m: m.repeated_text(UNLIKE),
     "repeated, recoveries": lambda m: m.repeated_text(RECOVERIES),
     "repeated, seven amber": lambda m: m.repeated_text([*((f"i{k}", AMBER) for k in range(7)), ("green", GREEN)]),

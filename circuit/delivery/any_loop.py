@@ -21,7 +21,7 @@ from thermicon.icons.number_text import signed
 
 from ..arrays import Array
 from ..safety.checks import Before, Check, Scenario, worst_of
-from ..safety.demands import CutOff
+from ..safety.demands import CutOff, SingleFault
 from ..safety.ensemble import LaneDrives
 from ..safety.fault_limits import FaultLimits
 from ..safety.held import BEYOND_K, SENSOR_K, Span, Stages
@@ -38,6 +38,8 @@ from .temperatures import FollowingModule, rest_of_a_loop, updates_of
 
 SWINGS_S = (3.0, 3.0, 1.0, 1.0, 0.3, 0.3, 0.1, 0.1)
 """For how long a loop swings to the lower, then to the upper cut-off, and so on: it arrives, stays, or turns before."""
+STUCK_S = 1.0
+"""Within which a current at its limit moves the skin fastest: heat passes a contact and the stratum corneum sooner."""
 ROOM = 0.97
 """Share of a limit that the worst of these swings may reach."""
 STEP_A, TRIES = 0.01, 12
@@ -73,9 +75,9 @@ class AnyLoop:
         """
         driver = self.module.ensemble.rig.driver
         given = limits = driver.current_min_A, driver.current_max_A
-        cold, warm = self.stayed(Stages((cut.low, cut.high), (cut.low, cut.high), (cut.low, cut.high)))
-        warm = replace(warm, nodes_C=np.maximum(cold.nodes_C, warm.nodes_C))
-        checks = wide = (*self._swings(cut, given), *self._at_limit(cut, warm, given[1]))
+        ends = self.ends(cut)
+        warm = replace(ends[1], nodes_C=np.maximum(ends[0].nodes_C, ends[1].nodes_C))
+        checks = wide = (*self._rates(cut, ends, given), *self._at_limit(cut, warm, given[1]))
         for _ in range(TRIES):
             share = {(check.quantity, check.upper): check.value / check.limit / ROOM for check in checks}
             warming, cooling = share["rate of skin temperature", True], share["rate of skin temperature", False]
@@ -83,7 +85,7 @@ class AnyLoop:
             if max(warming, cooling, hot) <= 1.0:
                 break
             limits = -_whole_A(-limits[0] / max(1.0, warming)), _whole_A(limits[1] / max(1.0, cooling, hot))
-            checks = (*self._swings(cut, limits), *self._at_limit(cut, warm, limits[1]))
+            checks = (*self._rates(cut, ends, limits), *self._at_limit(cut, warm, limits[1]))
         alike_A = min(-limits[0], limits[1])
         shown = [self._shown(play, given) for play in plays]
         if alike_A < max(-limits[0], limits[1]) and self._suffices((-alike_A, alike_A), plays, shown):
@@ -108,8 +110,10 @@ class AnyLoop:
         rest, goals = rest_of_a_loop(rig, float(play.command[0])), updates_of(play, 1.0 / rig.driver.update_Hz)
         return regulated(rig, self.within(limits_A), goals, rest)[1]
 
-    def _swings(self, cut: CutOff, limits_A: Limits_A) -> tuple[Check, ...]:
-        """Rates where a loop swings between the cut-offs, from a display without power on."""
+    def _rates(self, cut: CutOff, ends: Sequence[State], limits_A: Limits_A) -> tuple[Check, ...]:
+        """Rates where a loop swings between the cut-offs, from a display without power on; and where it goes to a limit
+        at once and stays there, from the cut-off of the other side.
+        """
         ensemble = self.module.ensemble
         period = 1.0 / ensemble.rig.driver.update_Hz
         counts = [max(1, round(swing / period)) for swing in SWINGS_S]
@@ -121,12 +125,27 @@ class AnyLoop:
         )
         currents: Array = np.append(flows, flows[:, -1:], axis=1)
         times: Array = np.arange(currents.shape[1], dtype=np.float64) * period
-        drives = LaneDrives(times, currents / ensemble.gain[:, np.newaxis])
+        runs = [(LaneDrives(times, currents / ensemble.gain[:, np.newaxis]), start)]
+        stuck: Array = np.linspace(0.0, STUCK_S, 2)
+        for end, limit_A in zip(ends, limits_A, strict=True):
+            runs.append((LaneDrives(stuck, np.full((len(lanes), 2), limit_A)), end))
         what = Scenario(way=f"under any loop of {limits_A[0]:g} … {limits_A[1]:g} A".replace("-", "−"))
-        tally = Tally(ensemble.rig.limits, ensemble.corners, what)
-        for (rows, values), _ in ensemble.play(drives, start):
-            tally.add(rows, values, sums=False)
-        return tuple(check for check in tally.checks() if check.quantity == "rate of skin temperature")
+        judged = []
+        for drives, begun in runs:
+            tally = Tally(ensemble.rig.limits, ensemble.corners, what)
+            for (rows, values), _ in ensemble.play(drives, begun):
+                tally.add(rows, values, sums=False)
+            judged.append(tally.checks())
+        return tuple(check for check in worst_of(judged) if check.quantity == "rate of skin temperature")
+
+    def swapped(self, cut: CutOff, limits_A: Limits_A) -> tuple[SingleFault, ...]:
+        """The fault of wires that are swapped in mid-play, where limits are not alike and the skin is then too fast."""
+        turned_A = -limits_A[1], -limits_A[0]
+        if turned_A == limits_A:
+            return ()
+        rates = self._rates(cut, self.ends(cut), turned_A)
+        told = {"rate": max(abs(check.value) for check in rates), "kept": False, "limit_A": limits_A}
+        return () if all(check.passed for check in rates) else (SingleFault("swapped fast", "red", told),)
 
     def _at_limit(self, cut: CutOff, warm: State, limit_A: float) -> tuple[Check, ...]:
         """The hot plate of a driver stuck at its limit, from nodes as `warm` as in any display inside the cut-offs;
@@ -168,6 +187,10 @@ class AnyLoop:
                 return CutOff(*every[number].ends_C, reaction), every[number], within_A, checks
         return CutOff(*every[-1].ends_C, 0.0), every[-1], within_A, checks
 
+    def ends(self, cut: CutOff) -> tuple[State, State]:
+        """Each corner whose display has been at the lower, or the upper, cut-off for good."""
+        return self.stayed(Stages((cut.low, cut.high), (cut.low, cut.high), (cut.low, cut.high)))
+
     def stayed(self, stages: Stages) -> tuple[State, State]:
         """Each corner whose display a fault has held at the lower, or the upper, cut-off for as long as that allows."""
         states = []
@@ -186,9 +209,12 @@ class AnyLoop:
     def _stuck(
         self, begun: Sequence[State], limits_A: Limits_A, reaction_s: float, may: FaultLimits
     ) -> tuple[Check, ...]:
-        """The limits of a fault with a driver at its limit from either state, and without current afterwards."""
-        ensemble, judged = self.module.ensemble, []
-        for state, current_A in zip(begun, (limits_A[1], limits_A[0]), strict=True):
+        """The limits of a fault with a driver at its limit from either state, and without current afterwards.
+
+        Wires that are swapped in mid-play turn the limit of the other sign into one of this sign.
+        """
+        ensemble, judged, most_A = self.module.ensemble, [], max(-limits_A[0], limits_A[1])
+        for state, current_A in zip(begun, (most_A, -most_A), strict=True):
             what = f"display at the cut-off, then {signed(current_A, 'g')} A for {reaction_s:g} s"
             tally = Tally(may.limits, ensemble.corners, Scenario(way=what, before=Before("any")))
             rows: Array = np.linspace(0.0, reaction_s, 5)

@@ -7,6 +7,7 @@ is tested for oscillation in the fastest and slowest corners.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -21,7 +22,7 @@ from ..safety.demands import CutOff, Demands, Loop, PolarityCheck, SingleFault
 from ..safety.display import DisplayCourse, for_good_C
 from ..safety.ensemble import Ensemble, LaneDrives
 from ..safety.fault_limits import FaultLimits
-from ..safety.held import LASTING_S, SENSOR_K, HeldSkin, Span, Stages, around_C, one_stage, two_stages
+from ..safety.held import LASTING_S, SENSOR_K, HeldSkin, Span, Stages, one_stage, two_stages
 from ..safety.polarity import least_fall_K, polarity_check, where_tests_begin
 from ..safety.shown import Stay, healthy_C
 from ..safety.ways_out import with_ways_out_of_set_points
@@ -33,14 +34,11 @@ from .delivered_drive import DeliveredDrive
 from .formats.form import samples_of
 from .samples import Samples
 from .shaped import LATE_S, PLAYING, looped
+from .take_over import WEAKER, TakeOver, baselines_C, ends_of, taken_over_C
 from .temperatures import FollowingModule, past_most_cooling, rest_of_a_loop, updates_of
 
 DELAYS_S = (0.1, 0.05, 0.02, 0.01, 0.0)
 """Delays that a loop of the rig may have beside what its file states; the longest that does not swing is demanded."""
-WEAKER = 0.5
-"""Share of the gains from which on a loop is judged."""
-TAKEN_OVER_S = 60.0
-"""A loop has brought a display that was without power to its baseline within this time, or is judged as if never."""
 SETTLING_S, SWING_K = 10.0, 0.2
 """How long after the last set-point a loop may swing, and by how much a second before that."""
 
@@ -67,14 +65,13 @@ class LoopProof:
         rig = deliveries[0].rig
         module, plays = FollowingModule.of(looped(rig)), [samples_of(delivery) for delivery in deliveries]
         loops, unpowered_C = AnyLoop(module, past_most_cooling(module.rigs)), module.unpowered_C()
-        ends_C = [unpowered_C, *map(ends_of, courses)]
-        reach_C = min(low for low, _ in ends_C), max(high for _, high in ends_C)
-        limits_A, swings = loops.limits_A(CutOff(*around_C(rig.limits, reach_C), 0.0), plays)
+        begun, swings = TakeOver.of(loops, plays, [unpowered_C, *(ends_of(course.display_C) for course in courses)])
+        limits_A = begun.limits_A
         drives = [module.drives(play) for play in plays]
         flows = np.concatenate([drive.current_A for drive in drives], axis=1)
         used_A = min(0.0, float(flows.min())), max(0.0, float(flows.max()))
         skin = HeldSkin.of(rig, FaultLimits.of(rig.limits, dose_before_min))
-        every = _stages(loops, plays, courses, reach_C, skin, narrowed_A(limits_A, used_A))
+        every = _stages(loops, plays, courses, begun, skin, narrowed_A(limits_A, used_A))
         cut, stages, limits_A, stuck = loops.cut_off(every, limits_A, used_A, skin.limits)
         beyond = _with_ways_out(stages, skin, deliveries)
         loop, swung = _judged_loop(loops, plays, limits_A, cut, (LATE_S,) if rig.controller is None else DELAYS_S)
@@ -82,8 +79,8 @@ class LoopProof:
         polarity, lost = _wiring(module, rig, plays, cut)
         demands = Demands(
             watchdog_s=0.0, cut_off_display_C=cut, polarity_check=polarity, rest_before_first_play_s=None,
-            pause_at_least_s=None, zero_current_at_most_s=None, faults=(lost,), held_cut_off_display_C=stages.held,
-            current_limit_A=limits_A, loop=loop,
+            pause_at_least_s=None, zero_current_at_most_s=None, faults=(*loops.swapped(cut, limits_A), lost),
+            held_cut_off_display_C=stages.held, current_limit_A=limits_A, loop=loop,
         )  # fmt: skip
         _, warmest = loops.stayed(stages)
         return LoopProof(module, drives, unpowered_C, skin.worst_dose_min(stages), warmest, demands, failed)
@@ -95,11 +92,6 @@ class LoopProof:
         return () if held is None else (inside_fault(held, self.demands.cut_off_display_C),)
 
 
-def ends_of(course: DisplayCourse) -> Span:
-    """Between which temperatures in °C a display is."""
-    return float(course.display_C.min()), float(course.display_C.max())
-
-
 def ends_of_traces(deliveries: Sequence[DeliveredDrive]) -> Span:
     """Between which temperatures in °C the display of the rig as given is."""
     lows = [float(one.trace.display_C.min()) for one in deliveries]
@@ -107,50 +99,27 @@ def ends_of_traces(deliveries: Sequence[DeliveredDrive]) -> Span:
     return min(lows), max(highs)
 
 
-def _beyond_s(course: DisplayCourse, inside_C: Span) -> float:
-    """For how long in s a play is beyond temperatures without a break."""
-    stay = Stay(inside_C)
-    times_s: Array = course.step_s * np.arange(len(course.display_C), dtype=np.float64)
-    stay.add(times_s, course.display_C[np.newaxis])
-    return stay.beyond_s
-
-
-def _from_no_power_s(loops: AnyLoop, bank: Bank, baseline_C: float, inside_C: Span) -> float:
-    """For how long in s the weakest loop leaves a display that was without power beyond temperatures."""
-    ensemble = loops.module.ensemble
-    own, period = ensemble.rig.controller, 1.0 / ensemble.rig.driver.update_Hz
-    assert own is not None
-    weakest = WEAKER * own.kp_A_per_K, WEAKER * own.ki_A_per_Ks, own.kd_As_per_K
-    gains = np.zeros((len(ensemble.corners), 5))
-    gains[:, [KP, KI, KD]] = np.outer(ensemble.gain, weakest)
-    gains[:, LAG_S] = own.lag_s
-    times_s: Array = period * np.arange(round(TAKEN_OVER_S / period), dtype=np.float64)
-    goals = np.full((1, len(times_s)), baseline_C)
-    lanes, begun = ensemble.lanes, ensemble.at_rest(0.0).nodes_C
-    none = np.zeros_like(lanes)
-    _, display, _ = run_regulate(bank, lanes, none, period, goals, gains, np.zeros(len(lanes)), begun.copy())
-    stay = Stay(inside_C, since_s=0.0)
-    stay.add(times_s, display)
+def _beyond_s(display_C: Array, step_s: float, inside_C: Span, since_s: float = -math.inf) -> float:
+    """For how long in s displays (lanes, rows) are beyond temperatures without a break."""
+    stay, times_s = Stay(inside_C, since_s), step_s * np.arange(display_C.shape[1], dtype=np.float64)
+    stay.add(times_s, display_C)
     return stay.beyond_s
 
 
 def _stages(
-    loops: AnyLoop,
-    plays: Sequence[Samples],
-    courses: Sequence[DisplayCourse],
-    reach_C: Span,
-    skin: HeldSkin,
+    loops: AnyLoop, plays: Sequence[Samples], courses: Sequence[DisplayCourse], begun: TakeOver, skin: HeldSkin,
     narrow_A: Limits_A,
-) -> list[Stages]:
+) -> list[Stages]:  # fmt: skip
     """Cut-offs around what displays reach, the farther ones first: one each where that suffices, else two."""
     limits, lasting = loops.module.ensemble.rig.limits, skin.lasting_C()
+    reach_C, bank = begun.reach_C, loops.within(narrow_A)
+    slow_C = (taken_over_C(loops, bank, level_C, is_wound_up=False) for level_C in baselines_C(plays))
     single = [one_stage(limits, reach_C, lasting, beyond_K) for beyond_K in BEYONDS_K]
     if not single[0].failed:  # what fails does not depend on how far beyond a cut-off acts
         return single
-    inside, weakest = healthy_C(lasting), loops.within(narrow_A)
-    baselines_C = {float(play.command[0]) for play in plays}
-    stays_s = [_beyond_s(course, inside) for course in courses]
-    stays_s += [_from_no_power_s(loops, weakest, baseline_C, inside) for baseline_C in baselines_C]
+    inside, period = healthy_C(lasting), 1.0 / loops.module.ensemble.rig.driver.update_Hz
+    stays_s = [_beyond_s(course.display_C[np.newaxis], course.step_s, inside) for course in courses]
+    stays_s += [_beyond_s(display_C, period, inside, since_s=0.0) for display_C in (*begun.displays_C, *slow_C)]
     return [two_stages(limits, skin, reach_C, lasting, max(stays_s), beyond_K) for beyond_K in BEYONDS_K]
 
 

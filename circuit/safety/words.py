@@ -134,7 +134,7 @@ def _prevented(fault: SingleFault) -> tuple[dict[str, Any], str, str]:
     harms = [f"{_harm(harm)} at {signed(amperes, '.3g')} A" for harm, amperes in told.get("harms", ())]
     told["harms"] = " and ".join(harms) or NO_LIMIT
     told["levels"] = " or ".join(f"{signed(level, '.1f')} °C" for level in told.get("levels_C", ()))
-    if fault.kind == "stuck fast":
+    if fault.kind in {"stuck fast", "swapped fast"}:
         told["limits"] = " … ".join(signed(end_A, "g") for end_A in told["limit_A"])
     if (cut := told.get("cut_off")) is not None:
         told |= {"react_s": cut.react_within_s, "ends": f"{cut.low:g} and {cut.high:g} °C"}

@@ -44,8 +44,12 @@ def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
     if not gates:
         return []
     again = "repeated plays" + (", in any order" if len(gates) > 1 else "")
-    stuck = [text for text in (stuck_text(gates), stuck_fast_text(gates)) if text is not None]
-    first = [("a driver stuck at its limit", text) for text in stuck]
+    faults = [
+        ("a driver stuck at its limit", stuck_text(gates)),
+        ("a driver stuck at its limit", fast_text(gates, "stuck fast")),
+        ("wires swapped in mid-play", fast_text(gates, "swapped fast")),
+    ]
+    first = [(fault, text) for fault, text in faults if text is not None]
     return [*first, (again, repeated_text(gates)), ("your hardware must provide", demands_text(gates))]
 
 
@@ -87,11 +91,11 @@ def stuck_text(gates: Sequence[Named]) -> str | None:
     return f"{stuck[0].to_dict()['text']}, and no cut-off is quick enough{whose}; use {'; or '.join(cures)}"
 
 
-def stuck_fast_text(gates: Sequence[Named]) -> str | None:
-    """The effect of a stuck driver where icons need a current that moves the skin too fast; None where none does."""
+def fast_text(gates: Sequence[Named], kind: str) -> str | None:
+    """The effect of a kind of fault where icons need a current that moves the skin too fast; None where none does."""
     from thermicon.circuit.safety.words import fault_cure
 
-    faults = [fault for _, gate in gates for fault in gate.demands.faults if fault.kind == "stuck fast"]
+    faults = [fault for _, gate in gates for fault in gate.demands.faults if fault.kind == kind]
     fast = next((fault for fault in faults if not fault.values["kept"]), None)
     if fast is None:
         return None

@@ -128,6 +128,7 @@ def every(places: list[object], of: Callable[..., Faults]) -> Faults:
             found.add(one)
     print(found.table())
     assert found.unsafe == []
+    assert [told for told, count in found.told.items() if count and told.startswith(NUISANCE)] == []
     return found
 
 
