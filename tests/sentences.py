@@ -52,6 +52,8 @@ FAULTS = {
     "unpowered loop": fault("unpowered loop", display_C=(24.0, 33.0), rest_s=30.0),
     "unpowered loop, long": fault("unpowered loop", display_C=(-4.0, 33.0), rest_s=None),
     "loop lost": fault("loop lost", harms=((Harm("display", 50.0, "°C"), -1.5),), cut_off=CUT_OFF),
+    "loop lost, doses": fault("loop lost", cut_off=CUT_OFF, harms=((Harm("thermal dose", 999.9, "min CEM43"), -1.4),
+                                                                   (Harm("thermal dose", 1000.1, "min CEM43"), -1.5))),
 }  # fmt: skip
 
 LANES = [Scenario("lane", before=Before(plays, 12.34567)) for plays in ("cycle", "warm", "cold", "once", "others")]

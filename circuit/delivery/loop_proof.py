@@ -75,7 +75,7 @@ class LoopProof:
         cut, stages, limits_A, stuck = loops.cut_off(every, limits_A, used_A, skin.limits)
         beyond = _with_ways_out(stages, skin, deliveries)
         loop, swung = _judged_loop(loops, plays, limits_A, cut, (LATE_S,) if rig.controller is None else DELAYS_S)
-        failed = tuple(check for check in (*swings, *beyond, *stuck, *swung) if not check.passed)
+        failed = tuple(check for check in (*swings, *beyond, *stuck, *(() if beyond else swung)) if not check.passed)
         polarity, lost = _wiring(module, rig, plays, cut)
         demands = Demands(
             watchdog_s=0.0, cut_off_display_C=cut, polarity_check=polarity, rest_before_first_play_s=None,

@@ -40,6 +40,8 @@ BEFORE = {
 }
 
 NO_LIMIT = "no limit is passed"
+MOST_TOLD = 1000.0
+"""Of a harm: a dose doubles with every half kelvin, and its figures mean nothing beyond this."""
 
 
 def corner_text(deviations: tuple[float, ...]) -> str:
@@ -148,4 +150,5 @@ def _prevented(fault: SingleFault) -> tuple[dict[str, Any], str, str]:
 
 
 def _harm(harm: Harm) -> str:
-    return f"{harm.quantity} reaches {signed(harm.value, '.1f')} {harm.unit}"
+    reached = "more than 1000" if harm.value > MOST_TOLD else signed(harm.value, ".1f")
+    return f"{harm.quantity} reaches {reached} {harm.unit}"

@@ -153,10 +153,13 @@ def test_a_start_that_fails_or_ends_before_a_trial_leaves_no_data(
 ) -> None:
     absent = "raise ModuleNotFoundError(\"No module named 'psychopy'\", name='psychopy')\n"
     (tmp_path / "psychopy.py").write_text(absent, encoding="utf-8")
+    shut = "def Serial(port, **how):\n    raise OSError(f'could not open port {port}')\n"
+    (tmp_path / "serial.py").write_text(shut, encoding="utf-8")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     for arguments, words in (
         (("--bench", "missing.py"), "--bench missing.py: there is no such file"),
         (("--marker", "bell"), "--marker bell: give none, serial:PORT"),
+        (("--marker", "serial:COM9"), "does not open: could not open port COM9; check --port, --channel, --marker"),
         ((), "the package psychopy is missing in this Python"),
     ):
         done = script("--participant", "A", *arguments, output=tmp_path / "data")
