@@ -222,6 +222,10 @@ class Lanes:
         _hold(self.parts, world, state, flow, spans, never if cut is None else cut, far)
         return far
 
+    def shown(self, state: Array) -> Array:
+        """The display (worlds,) in °C of states, one for each world."""
+        return np.asarray(self.circuit.read(state[:, : SUM - 1, None])[:, 2, 0])
+
     def regulate(self, loop: Array, state: Array, world: Index, levels_C: Array, period_s: float) -> Array:
         """Move states in place under PI loops (worlds, 7), as `hold` does, by set-points one for each update.
 
