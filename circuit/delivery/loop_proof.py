@@ -73,7 +73,7 @@ class LoopProof:
         skin = HeldSkin.of(rig, FaultLimits.of(rig.limits, dose_before_min))
         every = _stages(loops, plays, courses, begun, skin, narrowed_A(limits_A, used_A))
         cut, stages, limits_A, stuck = loops.cut_off(every, limits_A, used_A, skin.limits)
-        beyond = _with_ways_out(stages, skin, deliveries)
+        beyond = _with_ways_out(stages, skin, deliveries, begun.played_C)
         loop, swung = _judged_loop(loops, plays, limits_A, cut, (LATE_S,) if rig.controller is None else DELAYS_S)
         failed = tuple(check for check in (*swings, *beyond, *stuck, *(() if beyond else swung)) if not check.passed)
         polarity, lost = _wiring(module, rig, plays, cut)
@@ -123,13 +123,15 @@ def _stages(
     return [two_stages(limits, skin, reach_C, lasting, max(stays_s), beyond_K) for beyond_K in BEYONDS_K]
 
 
-def _with_ways_out(stages: Stages, skin: HeldSkin, deliveries: Sequence[DeliveredDrive]) -> tuple[Check, ...]:
+def _with_ways_out(
+    stages: Stages, skin: HeldSkin, deliveries: Sequence[DeliveredDrive], played_C: Span
+) -> tuple[Check, ...]:
     """What fails of cut-offs, with what would pass."""
     if not stages.failed:
         return ()
     known = HeldSkin(skin.modes[:1], skin.limits).brief_C(stages.lasting, stages.brief_s or LASTING_S)
     thermode_C = for_good_C(skin.modes, deliveries[0].rig.limits)
-    return with_ways_out_of_set_points(stages.failed, ends_of_traces(deliveries), thermode_C, known)
+    return with_ways_out_of_set_points(stages.failed, ends_of_traces(deliveries), thermode_C, known, played_C)
 
 
 def _wiring(

@@ -13,7 +13,7 @@ from ..safety.demands import CutOff
 from ..safety.held import SENSOR_K, Span, around_C
 from ..solver.batch_inputs import Bank, run_regulate
 from ..solver.kernel_regulate import KD, KI, KP, LAG_S
-from ..solver.network import HIGHEST_A, LOWEST_A
+from ..solver.network import COLD, HIGHEST_A, LOWEST_A
 from .any_loop import AnyLoop, Limits_A
 from .samples import Samples
 from .shaped import PLAYING
@@ -32,10 +32,11 @@ def ends_of(display_C: Array) -> Span:
 @dataclass(frozen=True, slots=True, eq=False)
 class TakeOver:
     """How loops take over a display that was without power: `displays_C` (lanes, updates) of each baseline, what
-    displays reach then and in plays, and current limits for that.
+    displays reach in plays or without power (`played_C`) and then too, and current limits for that.
     """
 
     displays_C: list[Array]
+    played_C: Span
     reach_C: Span
     limits_A: Limits_A
 
@@ -48,7 +49,7 @@ class TakeOver:
             reach_C = min(low for low, _ in spans_C), max(high for _, high in spans_C)
             return reach_C, *loops.limits_A(CutOff(*around_C(rig.limits, reach_C), 0.0), plays)
 
-        _, limits_A, _ = limited(ends_C)
+        played_C, limits_A, _ = limited(ends_C)
         for most_A in (limits_A, (rig.driver.current_min_A, rig.driver.current_max_A)):
             taken_C = [
                 taken_over_C(loops, loops.within(most_A), level_C, is_wound_up=True) for level_C in baselines_C(plays)
@@ -56,7 +57,7 @@ class TakeOver:
             reach_C, limits_A, checks = limited([*ends_C, *map(ends_of, taken_C)])
             if most_A[0] <= limits_A[0] and limits_A[1] <= most_A[1]:
                 break
-        return TakeOver(taken_C, reach_C, limits_A), checks
+        return TakeOver(taken_C, played_C, reach_C, limits_A), checks
 
 
 def baselines_C(plays: Sequence[Samples]) -> list[float]:
@@ -68,14 +69,14 @@ def taken_over_C(loops: AnyLoop, bank: Bank, baseline_C: float, is_wound_up: boo
     """Displays (lanes, updates) that loops take over after no power, by slow integrals and sensors that are wrong.
 
     Some loops hold an integral at the limit of current, from where it takes its time to come back, instead of stopping
-    it: `is_wound_up` begins there, so that the display goes beyond the baseline.
+    it: `is_wound_up` begins at the limit towards the baseline, so that the display goes beyond that.
     """
     ensemble, period = loops.module.ensemble, 1.0 / loops.module.ensemble.rig.driver.update_Hz
     own, count, begun = ensemble.rig.controller, len(ensemble.corners), ensemble.at_rest(0.0).nodes_C
     assert own is not None
     lanes, sides = np.tile(ensemble.lanes, 2), np.repeat([0, 1], count).astype(np.int64)
-    bias = np.concatenate([bank.plates[:, end] for end in (HIGHEST_A, LOWEST_A)]) * is_wound_up
-    updates = round(TAKEN_OVER_S / period)
+    limits_A = np.where(begun[:, COLD] > baseline_C, bank.plates[:, HIGHEST_A], bank.plates[:, LOWEST_A])
+    bias, updates = np.tile(limits_A, 2) * is_wound_up, round(TAKEN_OVER_S / period)
     goals = np.repeat([[baseline_C - SENSOR_K], [baseline_C + SENSOR_K]], updates, axis=1)
     displays_C = []
     for share in (WEAKER, 1.0 + PLAYING):

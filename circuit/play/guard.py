@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from .steps import NOTHING_S, Sensors, Steps
+from .steps import NOTHING_S, SECOND, Sensors, Steps
 from .watch import SLOWEST_PART, Numbers, Refused, Stopped
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ class Guard(Steps):
     def _resting(self, row: Any) -> Iterator[float]:
         """Hold the rest, and a pause at least: nobody knows what played before this program began or was reset."""
         numbers, self.rested = self._numbers(), False
-        if numbers.second_sensor and "second sensor" not in self._sensors:
+        if numbers.second_sensor and SECOND not in self._sensors:
             warnings.warn("a controller's cut-off needs a second sensor: give its function as second_C", stacklevel=2)
         self._watch.expect()
         yield from self._timing_sensors(numbers)

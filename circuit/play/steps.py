@@ -19,6 +19,7 @@ FEED_EVERY_S = 0.2
 BREAK_SEND_S = 0.2  # what waits so long for a send to end goes on without it
 ANSWER_S = 5.0  # of a look that only times the sensors
 
+FIRST, SECOND = "sensor", "second sensor"
 Sensor = Callable[[], float] | None
 Sensors = tuple[Sensor, Sensor]  # the first and the second one of a display; None: there is none
 
@@ -98,7 +99,7 @@ class Steps:
             left_s = self.ended_s + pause_s - self._now_s
             if left_s > 0 and pause_s > 0:
                 raise Refused(f"the pause of {pause_s:g} s between plays is not over: wait {left_s:.1f} s more")
-            given = {name: read for name, read in zip(("sensor", "second sensor"), sensors, strict=True) if read}
+            given = {name: read for name, read in zip((FIRST, SECOND), sensors, strict=True) if read}
             self._line, self._sensors = line, self._sensors | given
             if self._look is None or self._look.done.is_set():  # one that hangs still counts
                 self._look, self._asked_s = None, -math.inf

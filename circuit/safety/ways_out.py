@@ -30,12 +30,17 @@ def with_ways_out_of_drives(failed: Sequence[Check], shown_C: Span, thermode_C: 
 
 
 def with_ways_out_of_set_points(
-    failed: Sequence[Check], shown_C: Span, thermode_C: Span, known_C: Span
+    failed: Sequence[Check], shown_C: Span, thermode_C: Span, known_C: Span, played_C: Span
 ) -> tuple[Check, ...]:
-    """Failed checks of set-points, likewise; `known_C` is where a display may go whose contact was measured."""
+    """Failed checks of set-points, likewise.
+
+    `known_C` is where a display may go whose contact was measured, `played_C` where displays go in plays.
+    """
     told = []
     for check in failed:
         ways = _by_thermode(check, shown_C, thermode_C)
+        if _inside_K(check, check.limit, played_C) >= 0.0:
+            ways.insert(0, "use a quicker loop, which comes nearer to its baseline after no power")
         if _inside_K(check, known_C[int(check.upper)], (check.value, check.value)) >= LEAST_BEYOND_K:
             ways.append("measure the contact, and state uncertainty.contact_resistance_relative")
         told.append(_told(check, ways))
