@@ -118,7 +118,7 @@ def improve_command(
     where = rig.load(icons, files[0])
     model = crowd.load(where)
     how = {**crowd.asked, "goal": wanted, "parameters": crowd.draws(model), "observer": model}
-    what = objective or ("correct" if up_to is not None else objective_of(wanted))
+    what: Objective = objective or ("felt-and-named" if up_to is not None else objective_of(wanted))
     command = commands(files, rig, crowd)
     written = next((str(path) for path in outputs if path.suffix == ".cue"), None)
     if up_to is not None:
@@ -209,14 +209,14 @@ def _roughly(icons: IconSet, rig: Rig, how: dict[str, Any]) -> str:
 
     crowd = {key: value for key, value in how.items() if key in ("seed", "tracking", "memory", "observer")}
     found = appraise(icons, rig, people=PEOPLE, **crowd)
-    named = f"{percent(found.proportion_correct)} correct, worst pair d′ {number(found.d_prime)}"
+    named = f"{percent(found.felt_and_named)} felt and named, worst pair d′ {number(found.d_prime)}"
     return f"{', '.join(icon.name for icon in icons)}: {named}, for {PEOPLE} people"
 
 
 def objective_of(goal: Goal | None) -> Objective:
-    """The objective of a goal: the worst pair, unless it is about the proportion correct or bits."""
-    wanted = [name for name in ("correct", "bits") if goal is not None and goal.of(name) is not None]
-    return "worst" if not wanted else "correct" if wanted[0] == "correct" else "bits"
+    """The objective of a goal: the worst pair, unless it is about what is felt and named, named, or bits."""
+    of: dict[str, Objective] = {"felt_and_named": "felt-and-named", "named": "named", "bits": "bits"}
+    return next((word for name, word in of.items() if goal is not None and goal.of(name) is not None), "worst")
 
 
 def chosen(

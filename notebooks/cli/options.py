@@ -102,7 +102,9 @@ def commands(files: Sequence[str], rig: Options, crowd: Options) -> Callable[...
 Goals = Annotated[
     list[str] | None,
     opt(
-        "TEXT", 'What is wanted, such as "90 % correct for 95 % of people, time <= 10 s, safety green".', name="--goal"
+        "TEXT",
+        'What is wanted, such as "90 % felt-and-named for 95 % of people, time <= 10 s, safety green".',
+        name="--goal",
     ),
 ]
 
@@ -110,8 +112,13 @@ Goals = Annotated[
 def goal_of(texts: list[str] | None) -> Goal | None:
     """The goal of all ``--goal`` together; None where none was given."""
     from thermicon.perception import Goal
+    from thermicon.perception.selection.goal import other_word
 
-    return Goal.parse(", ".join(texts)) if texts else None
+    if not texts:
+        return None
+    if (offer := other_word(", ".join(texts))) is not None:
+        note(offer)
+    return Goal.parse(", ".join(texts))
 
 
 FILES = ("rig", "observer")

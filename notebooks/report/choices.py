@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from thermicon.perception.selection.goal_result import GoalPartResult, GoalResult
 
 SHARE = "For a share of people: what at least so many reach, with the uncertainty of the model."
-NAMES = {"worst": "the worst pair", "correct": "proportion correct", "bits": "bits", "bits-per-s": "bits per second"}
+NAMES = {"worst": "the worst pair", "felt-and-named": "felt and named", "named": "the proportion named correctly",
+         "bits": "bits", "bits-per-s": "bits per second"}  # fmt: skip
 
 
 def goal_lines(goal: GoalResult, verdict: str = "") -> Iterator[str]:
@@ -86,8 +87,8 @@ def scored(objective: str, value: float) -> str:
     """Write the value of an objective with its meaning."""
     if objective == "worst":
         return f"d′ {number(value)} in the worst pair"
-    if objective == "correct":
-        return f"{percent(value)} correct"
+    if objective in ("felt-and-named", "named"):
+        return f"{percent(value)} {objective.replace('-', ' ')}"
     return f"{value:.2f} {'bits' if objective == 'bits' else 'bits/s'}"
 
 

@@ -24,11 +24,20 @@ REFINING_PEOPLE = 24
 
 def frontier_report(found: Frontier, title: str, following: str = "") -> list[Block]:
     """Report one row for each number of icons, the largest choice, what was left out, and what follows."""
-    heads = ("icons", "correct", "95 % of people", "d′", "bits", "time", "energy", *(["goal"] * bool(found.goals)))
+    heads = (
+        "icons",
+        "felt and named",
+        "95 % of people",
+        "d′",
+        "bits",
+        "time",
+        "energy",
+        *(["goal"] * bool(found.goals)),
+    )
     rows = [
         (
             str(len(point.icons)) + ("" if point.optimal else " *"),
-            percent(point.at_own_range.proportion_correct),
+            percent(point.at_own_range.felt_and_named),
             f"from {percent(point.reached)}",
             number(point.at_own_range.d_prime),
             f"{point.at_own_range.information_bits:.2f}",
@@ -121,14 +130,15 @@ def _scores(found: SearchResult, before: SetReport, after: SetReport) -> Iterato
     """Rows of scores."""
     a, b, pair = found.before, found.after, (before.ranking, after.ranking)
     yield "worst pair, d′", number(a.d_prime), number(b.d_prime)
-    yield "proportion correct", percent(a.proportion_correct), percent(b.proportion_correct)
+    yield "felt and named", percent(a.felt_and_named), percent(b.felt_and_named)
     if pair[1].people > 1:
-        one, other = (percent_span(*each.proportion_correct_interval) for each in pair)
+        one, other = (percent_span(*each.felt_and_named_interval) for each in pair)
         yield "  middle 95 % of people", one, other
     intervals = [each.new_laboratory for each in pair if each.new_laboratory]
     if len(intervals) == len(pair):
-        one, other = (percent_span(*each.proportion_correct) for each in intervals)
+        one, other = (percent_span(*each.felt_and_named) for each in intervals)
         yield f"  {laboratory(pair[1])} (95 %)", one, other
+    yield "named", percent(a.proportion_correct), percent(b.proportion_correct)
     yield "information, bits", f"{a.information_bits:.2f}", f"{b.information_bits:.2f}"
     yield "information rate, bits/s", f"{a.bits_per_s:.2f}", f"{b.bits_per_s:.2f}"
     yield "total duration, s", number(pair[0].total_s), number(pair[1].total_s)

@@ -25,7 +25,10 @@ BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
 MOST_CONSTANTS = 12
 """Constants in the table of what carries the doubt; a file has them all."""
-RANKED = ("icon", "detected", "onset", "channel", "correct", "most confused with")
+RANKED = ("icon", "detected", "onset", "channel", "felt and named", "most confused with")
+NAMED = "named"
+A_POINT = 0.01
+"""Where felt and named is less than named by more for any icon, both are shown."""
 
 
 def rank_report(
@@ -111,29 +114,39 @@ def cards(made: SetReport) -> tuple[tuple[str, str], ...]:
     mean = sum(icon.detected_probability for icon in icons) / len(icons)
     if worst is None:
         return ((percent(mean), "of trials detected"),)
-    correct, bits = "named correctly", "of information"
+    alert, correct, bits = "felt and named", "named correctly where announced", "of information, which counts names"
     if choice is not None:
         own = choice.at_own_range
-        share, information, d_prime = own.proportion_correct, own.information_bits, own.d_prime
+        both, information, d_prime = (own.felt_and_named, own.proportion_correct), own.information_bits, own.d_prime
         pair = f"nearest pair: {' and '.join(own.worst_pair)}"
     else:
-        share, information, d_prime = ranking.proportion_correct, ranking.information_bits, worst.d_prime
+        both = ranking.felt_and_named, ranking.proportion_correct
+        information, d_prime = ranking.information_bits, worst.d_prime
         fine = {icon.name for icon in icons if icon.playable}
         those = " that can be played" if {worst.a, worst.b} <= fine < {*ranking.labels} else ""
         pair = f"worst pair{those}: {worst.a} and {worst.b}, confused in {percent(worst.confused_probability)}"
     if elsewhere is not None:
-        within, ends = f"in {laboratory(ranking)} (95 %)", (elsewhere.proportion_correct, elsewhere.information_bits)
+        within, ends = f"in {laboratory(ranking)} (95 %)", (elsewhere.felt_and_named, elsewhere.proportion_correct)
+        low, high = elsewhere.information_bits
     else:
-        within, ends = "middle 95 % of people", (ranking.proportion_correct_interval, ranking.information_bits_interval)
+        within, (low, high) = "middle 95 % of people", ranking.information_bits_interval
+        ends = ranking.felt_and_named_interval, ranking.proportion_correct_interval
     if elsewhere is not None or (choice is None and ranking.people > 1):
-        correct += f"; {within}: {percent_span(*ends[0])}"
-        bits += f"; {within}: {ends[1][0]:.2f}–{ends[1][1]:.2f}"
+        alert += f"; {within}: {percent_span(*ends[0])}"
+        correct += f"; {within}: {percent_span(*ends[1])}"
+        bits += f"; {within}: {low:.2f}–{high:.2f}"
     return (
-        (percent(share), correct),
+        (percent(both[0]), alert),
+        *([(percent(both[1]), correct)] if differs(icons) else []),
         (f"{information:.2f} bits", bits),
         (percent(mean), f"of trials detected; least: {least.name}, {percent(least.detected_probability)}"),
         (f"d′ {number(d_prime)}", pair),
     )
+
+
+def differs(icons: Sequence[IconScore]) -> bool:
+    """Whether any icon is named much more often, where it is announced, than it is both felt and named."""
+    return any(icon.proportion_correct - icon.felt_and_named > A_POINT for icon in icons)
 
 
 def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = None) -> Grid:
@@ -144,20 +157,23 @@ def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = N
     apart, labels = sum(icon.playable for icon in icons), made.ranking.labels
     chosen = () if made.choice is None else made.choice.icons
     icons = sorted(icons, key=lambda icon: icon.name not in chosen)
+    both = differs(icons)
+    heads = (*RANKED[:-1], NAMED, RANKED[-1]) if both else RANKED
     rows: list[tuple[str | Cell, ...]] = [
         (
             f"{'✓ ' * (icon.name in chosen)}{icon.name}{' *' * (place >= apart)}",
             percent(icon.detected_probability),
             seconds(icon.onset_s),
             icon.channel or "–",
-            Cell(percent(icon.proportion_correct), "strong"),
+            Cell(percent(icon.felt_and_named), "strong"),
+            *([percent(icon.proportion_correct)] if both else []),
             rival(made.ranking, labels.index(icon.name)),
         )
         for place, icon in enumerate(icons)
     ]
     if most is not None and len(rows) > (most := max(most, len(chosen))) + 1:
-        rows = [*rows[:most], (f"and {len(rows) - most} more", *[""] * (len(RANKED) - 1))]
-    return grid(RANKED, rows, ("detected", "onset", "correct"), RANKED, apart)
+        rows = [*rows[:most], (f"and {len(rows) - most} more", *[""] * (len(heads) - 1))]
+    return grid(heads, rows, ("detected", "onset", "felt and named", NAMED), heads, apart)
 
 
 def rival(ranking: Ranking, place: int) -> str:

@@ -23,7 +23,8 @@ def sets_report(names: tuple[str, str], sets: tuple[Ranking, Ranking]) -> list[B
     rows = [
         ("rig", *(each.rig for each in sets)),
         ("icons", *(str(len(each.icons)) for each in sets)),
-        ("named correctly", *(percent(each.proportion_correct) for each in sets)),
+        ("felt and named", *(percent(each.felt_and_named) for each in sets)),
+        ("named", *(percent(each.proportion_correct) for each in sets)),
         ("information, bits", *(f"{each.information_bits:.2f}" for each in sets)),
         ("worst pair", *(" and ".join(each.worst_pair or ("–",)) for each in sets)),
         ("smallest d′", *(number(min(pair.d_prime for pair in each.pairs)) for each in sets)),
@@ -31,16 +32,16 @@ def sets_report(names: tuple[str, str], sets: tuple[Ranking, Ranking]) -> list[B
     tail = "These are predictions of a model, not measurements."
     if one.new_laboratory is not None and other.new_laboratory is not None:
         reached = (
-            np.quantile(each.new_laboratory.persons["correct"], 1.0 - REACHED_BY)
+            np.quantile(each.new_laboratory.persons["felt_and_named"], 1.0 - REACHED_BY)
             for each in sets
             if each.new_laboratory is not None
         )
         rows.insert(3, (f"{percent(REACHED_BY)} of people", *(f"from {percent(float(each))}" for each in reached)))
         share = one.new_laboratory.ahead_of(other.new_laboratory)
         better = names[0] if share >= 0.5 else names[1]
-        points = 100.0 * abs(one.proportion_correct - other.proportion_correct)
+        points = 100.0 * abs(one.felt_and_named - other.felt_and_named)
         tail = (
-            f"{percent(max(share, 1.0 - share))} of people name {better} better, by {number(points)} points in the "
+            f"{percent(max(share, 1.0 - share))} of people feel and name {better} better, by {number(points)} points in the "
             f"mean, with the uncertainty of the model ({one.new_laboratory.draws} draws). {tail}"
         )
     crowd = count_of(one.people, "virtual person", "virtual people")

@@ -153,9 +153,10 @@ class LaboratoryDraws:
 
     `values` (draws, constants) belong to `names`; `acting` says, when asked, which (constants,) take part in how
     the set is named.
-    Scores (draws,) are means over the people of a draw, `detected`, `onset_s` (draws, icons; NaN: not felt) and
-    `d_prime` (draws, icons, icons) medians, `confused` the mean of both ways; `persons_…` (draws, people) are those of
-    single people, detection by the icon that a person detects least.
+    Scores (draws,), `felt_and_named` too, are means over the people of a draw, so are `detected` and
+    `each_felt_and_named` (draws, icons); `onset_s` (draws, icons; NaN: not felt) and `d_prime` (draws, icons, icons)
+    are medians, `confused` the mean of both ways; `persons_…` (draws, people) are those of single people, detection by
+    the icon that a person detects least.
     """
 
     names: tuple[str, ...]
@@ -167,9 +168,12 @@ class LaboratoryDraws:
     d_prime: Array
     onset_s: Array
     confused: Array
+    each_felt_and_named: Array
+    felt_and_named: Array
     persons_correct: Array
     persons_bits: Array
     persons_detected: Array
+    persons_felt_and_named: Array
 
     def __len__(self) -> int:
         return int(self.proportion_correct.size)
@@ -204,7 +208,7 @@ def laboratory_draws(
         found.append(scores)
         if step is not None:
             step()
-    each = (np.stack([scores[k] for scores in found]) for k in range(9))
+    each = (np.stack(scores) for scores in zip(*found, strict=True))
     acting = cache(partial(_acting, laboratories, played(0), min(count, FEW), form, seed, task))
     return LaboratoryDraws(laboratories.names, laboratories.values, acting, *each)
 
@@ -239,7 +243,7 @@ def scored(
     task: Task,
     invited: NDArray[np.int64],
 ) -> tuple[Array, ...]:
-    """Scores of the invited people (correct, bits, detected, d′, onset, confusions), and of each single one."""
+    """Scores of the invited people (correct, bits, detected, d′, onset, confusions, felt and named), and of each."""
     samples = min(SAMPLES, max(LEAST, NAMED // len(few.names)))
     felt = respond(few, people, observer, times=True)
     d_prime, confusion = identify(felt, form, people, observer, seed, samples, task=task)
@@ -248,8 +252,11 @@ def scored(
     reported = found.courses[invited].sum(axis=0)
     reports = pooled(found.probability[invited], found.cold_share[invited], reported, found.dt_s)
     correct, bits, apart = correct[invited], bits[invited], np.median(d_prime[invited], axis=0)
+    # For each person before any mean: who is less sensitive feels less and confuses more.
+    alert = (found.probability * np.diagonal(confusion.probability, axis1=1, axis2=2))[invited]
     of_set = correct.mean(), bits.mean(), reports.probability, apart, reports.onset_s, 0.5 * (named + named.T)
-    return *of_set, correct, bits, found.probability[invited].min(axis=1)
+    single = correct, bits, found.probability[invited].min(axis=1), alert.mean(axis=1)
+    return *of_set, alert.mean(axis=0), alert.mean(), *single
 
 
 def people_for_intervals(icons: int) -> int:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -31,7 +31,7 @@ COVER = (2.5, 97.5)
 Interval = tuple[float, float]
 NEW_LABORATORY = (
     *("detected_interval_new_laboratory", "onset_interval_new_laboratory_s"),
-    "proportion_correct_interval_new_laboratory",
+    *("proportion_correct_interval_new_laboratory", "felt_and_named_interval_new_laboratory"),
 )
 """Keys of the intervals of an icon in the JSON of `rank`."""
 
@@ -53,6 +53,8 @@ class NewLaboratory:
     onset_s: tuple[Interval | None, ...]
     d_prime: tuple[Array, Array]
     confused: tuple[Array, Array]
+    felt_and_named: Interval
+    each_felt_and_named: tuple[Interval, ...]
     each: LaboratoryDraws
 
     def pair(self, i: int, j: int, of: str = "d_prime") -> Interval:
@@ -62,31 +64,32 @@ class NewLaboratory:
 
     @property
     def persons(self) -> dict[str, Array]:
-        """Proportion correct, bits and least detection (n,) of single people, of all draws together."""
+        """Felt and named, named, bits and least detection (n,) of single people, of all draws together."""
         return {
-            "correct": self.each.persons_correct.reshape(-1),
+            "felt_and_named": self.each.persons_felt_and_named.reshape(-1),
+            "named": self.each.persons_correct.reshape(-1),
             "bits": self.each.persons_bits.reshape(-1),
             "detected": self.each.persons_detected.reshape(-1),
         }
 
     def ahead_of(self, other: NewLaboratory) -> float:
-        """The share of draws in which a person names these icons better than the other's; a tie counts half."""
-        mine, theirs = self.each.persons_correct[..., None], other.each.persons_correct[:, None]
-        if mine.shape[1] == theirs.shape[2]:
-            mine, theirs = self.each.persons_correct, other.each.persons_correct
+        """The share of draws in which a person feels and names these better than the other's; a tie counts half."""
+        own, others = self.each.persons_felt_and_named, other.each.persons_felt_and_named
+        mine, theirs = (own, others) if own.shape == others.shape else (own[..., None], others[:, None])
         return float((mine > theirs).mean() + 0.5 * (mine == theirs).mean())
 
     def rows(self, names: Sequence[str]) -> list[dict[str, Any]]:
         """The intervals of every icon, by the keys of `rank --json`."""
         named = [self.pair(k, k, "confused") for k in range(len(names))]
-        keys, rows = ("name", *NEW_LABORATORY), zip(names, self.detected, self.onset_s, named, strict=True)
+        each = zip(names, self.detected, self.onset_s, named, self.each_felt_and_named, strict=True)
+        keys, rows = ("name", *NEW_LABORATORY), each
         return [dict(zip(keys, row, strict=True)) for row in rows]
 
     def __repr__(self) -> str:
-        (low, high), (least, most) = self.proportion_correct, self.information_bits
+        (low, high), (least, most) = self.felt_and_named, self.information_bits
         return (
             f"NewLaboratory({self.draws} draws, {self.people} people each: "
-            f"{100 * low:.1f}–{100 * high:.1f} % correct, {least:.2f}–{most:.2f} bits)"
+            f"{100 * low:.1f}–{100 * high:.1f} % felt and named, {least:.2f}–{most:.2f} bits)"
         )
 
 
@@ -99,7 +102,8 @@ class Nominal:
     detected: Array
     d_prime: Array
     onset_s: Array
-    confused: Array = field(default_factory=lambda: np.array(math.nan))
+    confused: Array
+    each_felt_and_named: Array
 
 
 def new_laboratory(
@@ -137,9 +141,19 @@ def new_laboratory(
     # Means over all the people of the nominal observer: their sample belongs to the draw.
     centre = scored(few, persons, own.nominal, form, seed, task, np.arange(len(persons)))
     tops = (1.0, math.log2(count), 1.0, math.inf, math.inf, 1.0)
+    shifts = {name: getattr(predicted, name) - own for name, own in zip(Nominal.__slots__, centre[:7], strict=True)}
     moved: dict[str, Any] = {}
-    for name, own_values, top in zip(Nominal.__slots__, centre[:6], tops, strict=True):
-        moved[name] = np.clip(getattr(each, name) + (getattr(predicted, name) - own_values), 0.0, top)
+    for name, top in zip(Nominal.__slots__, tops, strict=False):
+        moved[name] = np.clip(getattr(each, name) + shifts[name], 0.0, top)
+    persons_correct = np.clip(each.persons_correct + shifts["proportion_correct"], 0.0, 1.0)
+    # What is felt and named was named: shifts of their own must not take it above that.
+    alert_shift, named = shifts["each_felt_and_named"], np.diagonal(moved["confused"], axis1=1, axis2=2)
+    most = np.minimum(moved["proportion_correct"], 1.0)
+    moved["each_felt_and_named"] = np.clip(
+        each.each_felt_and_named + alert_shift, 0.0, np.where(np.isnan(named), 1.0, named)
+    )
+    alert = np.clip(each.each_felt_and_named.mean(axis=1) + alert_shift.mean(), 0.0, most)
+    persons_alert = np.clip(each.persons_felt_and_named + alert_shift.mean(), 0.0, persons_correct)
     apart, confused = (tuple(np.percentile(moved[name], COVER, axis=0)) for name in ("d_prime", "confused"))
     return NewLaboratory(
         draws=draws,
@@ -155,11 +169,15 @@ def new_laboratory(
         ),
         d_prime=apart,
         confused=confused,
+        felt_and_named=interval_of(alert),
+        each_felt_and_named=tuple(map(interval_of, moved["each_felt_and_named"].T)),
         each=replace(
             each,
             **moved,
-            persons_correct=np.clip(each.persons_correct + (predicted.proportion_correct - centre[0]), 0.0, 1.0),
-            persons_bits=np.clip(each.persons_bits + (predicted.information_bits - centre[1]), 0.0, tops[1]),
+            felt_and_named=alert,
+            persons_correct=persons_correct,
+            persons_bits=np.clip(each.persons_bits + shifts["information_bits"], 0.0, tops[1]),
+            persons_felt_and_named=persons_alert,
         ),
     )
 

@@ -154,9 +154,12 @@ def run(job: Job, number: int) -> BatchResult:
 
 @dataclass(frozen=True, slots=True)
 class FeltResult:
-    """Percepts of m icons: `detection` (m,) by one person drawn at random, `pairs` (people, m(m − 1)/2) of d′."""
+    """Percepts of m icons: `detection` (m,) by one person drawn at random, probability `reports` (people, m) of a
+    report, `pairs` (people, m(m − 1)/2) of d′.
+    """
 
     detection: Detection
+    reports: Array
     pairs: Array
 
     @property
@@ -188,9 +191,9 @@ class FeltResult:
 class PooledResult(FeltResult):
     """Responses of all people to m icons.
 
-    `pooled` (m, m); `each_correct` (people, m); `bits`, `plugin` (people,); `other_correct` (m,) proportion correct of
-    each icon by the other form. `standard_error` and `person_standard_error` are the largest sampling errors of a cell,
-    pooled and of one person.
+    `pooled` (m, m); `each_correct` (people, m) where an icon is announced; `bits`, `plugin` (people,); `other_correct`
+    (m,) proportion correct of each icon by the other form. `standard_error` and `person_standard_error` are the largest
+    sampling errors of a cell, pooled and of one person.
     """
 
     pooled: Array
@@ -206,8 +209,18 @@ class PooledResult(FeltResult):
 
     @property
     def correct(self) -> Array:
-        """Proportion correct of every person, (people,)."""
+        """Proportion named correctly by every person, (people,)."""
         return np.asarray(self.each_correct.mean(axis=1))
+
+    @property
+    def each_felt_and_named(self) -> Array:
+        """Share of plays that every person reports and names correctly, (people, m)."""
+        return self.reports * self.each_correct
+
+    @property
+    def felt_and_named(self) -> Array:
+        """The same of the whole set, (people,)."""
+        return np.asarray(self.each_felt_and_named.mean(axis=1))
 
 
 def felt_by_people(job: Job, first: int, step: Callable[[], None]) -> Iterator[FeltResult]:
@@ -230,7 +243,7 @@ def felt_by_people(job: Job, first: int, step: Callable[[], None]) -> Iterator[F
         step()
         if number in (-(-first // job.at_once), job.batches):
             detected, cold, pairs = (np.concatenate(values) for values in zip(*held, strict=True))
-            yield FeltResult(pooled_detection(detected, cold, reports, report_step(DT_S)), pairs)
+            yield FeltResult(pooled_detection(detected, cold, reports, report_step(DT_S)), detected, pairs)
 
 
 def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None]) -> PooledResult:
@@ -263,6 +276,7 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
     reports = np.asarray(sum(part.reported[0] for part in ordered))
     return PooledResult(
         detection=pooled_detection(joined("detected"), joined("cold_share"), reports, report_step(DT_S)),
+        reports=joined("detected"),
         pairs=joined("d_prime"),
         pooled=mean,
         each_correct=joined("correct"),

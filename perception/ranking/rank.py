@@ -136,7 +136,7 @@ def with_intervals(ranking: Ranking, draws: int, step: Callable[[], None] | None
     job, felt, model = ranking.job, ranking.felt, ranking.model
     onsets = felt.detection.onset_s
     scores, confused = (ranking.proportion_correct, ranking.information_bits), 0.5 * (felt.pooled + felt.pooled.T)
-    whole = Nominal(*scores, felt.detected, felt.middle, onsets, confused)
+    whole = Nominal(*scores, felt.detected, felt.middle, onsets, confused, felt.each_felt_and_named.mean(axis=0))
     crowd = model.people(job.people, job.seed)
     found = new_laboratory(
         job.icons, job.rig, job.end_s, crowd, whole, job.memory,

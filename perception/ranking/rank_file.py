@@ -23,7 +23,17 @@ if TYPE_CHECKING:
 
 ICON_KEYS = (
     *("name", "detected_probability", "onset_s", "channel", "peak_change_K", "attack_K_per_s", "delay_s"),
-    *("proportion_correct", "reachable", "safe", "reason", "cautions", "rules", "rules_score", "rules_margin"),
+    *(
+        "felt_and_named",
+        "proportion_correct",
+        "reachable",
+        "safe",
+        "reason",
+        "cautions",
+        "rules",
+        "rules_score",
+        "rules_margin",
+    ),
     "outside_data",
 )
 TWO_NUMBERS = ("peak_change_K", "attack_K_per_s", "delay_s")
@@ -71,7 +81,10 @@ def ranking_file(ranking: Ranking) -> dict[str, Any]:
                 "person_standard_error": ranking.felt.person_standard_error,
             },
             "set": _set(ranking, asked),
-            "persons": {"proportion_correct": list(ranking.persons)},
+            "persons": {
+                "proportion_correct": list(ranking.persons),
+                "felt_and_named": ranking.felt.felt_and_named.tolist(),
+            },
             "assumptions": asdict(ranking.assumptions),
             "goal": None,
             "chosen": None,
@@ -120,6 +133,8 @@ def plain(held: Any) -> Any:
 def _set(ranking: Ranking, asked: NewLaboratory | None) -> dict[str, Any]:
     many = len(ranking.icons) > 1
     return {
+        "felt_and_named": ranking.felt_and_named,
+        "felt_and_named_interval": list(ranking.felt_and_named_interval),
         "proportion_correct": ranking.proportion_correct,
         "proportion_correct_interval": list(ranking.proportion_correct_interval),
         "information_bits": ranking.information_bits if many else None,
@@ -133,6 +148,7 @@ def _set(ranking: Ranking, asked: NewLaboratory | None) -> dict[str, Any]:
         "rules_disagree": list(ranking.rules_disagree),
         "norm_sensitivity": ranking.memory_sensitivity,
         "norm_changes": ranking.memory_changes,
+        "felt_and_named_interval_new_laboratory": asked.felt_and_named if asked else None,
         "proportion_correct_interval_new_laboratory": asked.proportion_correct if asked else None,
         "information_bits_interval_new_laboratory": asked.information_bits if asked and many else None,
         "posterior_draws": asked.draws if asked else None,

@@ -143,6 +143,16 @@ class Ranking(Drawn, Tabled):
         return self.felt.pooled
 
     @property
+    def felt_and_named(self) -> float:
+        """Share of plays that are felt and named correctly, 0–1: the mean over people of both for each."""
+        return float(self.felt.felt_and_named.mean())
+
+    @property
+    def felt_and_named_interval(self) -> tuple[float, float]:
+        """Felt and named of the middle 95 % of people."""
+        return interval_of(self.felt.felt_and_named)
+
+    @property
     def persons(self) -> tuple[float, ...]:
         """Proportion correct of every virtual person, 0–1."""
         return tuple(self.felt.correct.tolist())
@@ -196,8 +206,8 @@ class Ranking(Drawn, Tabled):
 
     @property
     def best_first(self) -> tuple[IconScore, ...]:
-        """The icons by proportion correct; those that are not safe or not reached come last."""
-        return tuple(sorted(self.icons, key=lambda icon: (not icon.playable, -icon.proportion_correct, icon.name)))
+        """The icons by what is felt and named; those that are not safe or not reached come last."""
+        return tuple(sorted(self.icons, key=lambda icon: (not icon.playable, -icon.felt_and_named, icon.name)))
 
     @property
     def worst(self) -> PairScore | None:
@@ -250,6 +260,7 @@ class Ranking(Drawn, Tabled):
             {
                 "icon": icon.name,
                 "proportion_correct": icon.proportion_correct,
+                "felt_and_named": icon.felt_and_named,
                 "detected_probability": icon.detected_probability,
                 "onset_s": icon.onset_s,
                 "channel": icon.channel,
@@ -286,14 +297,14 @@ class Ranking(Drawn, Tabled):
         return as_text(self.to_dict())
 
     def __repr__(self) -> str:
-        low, high = self.proportion_correct_interval
+        low, high = self.felt_and_named_interval
         where = f"{count_of(len(self.icons), 'icon')} on {with_changes(self.rig, self.rig_changes)}"
         worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"
         crowd = count_of(self.people, "person", "people")
         spread = "" if self.people == 1 else f" [{100 * low:.0f}, {100 * high:.0f}]"
         bits = f", {self.information_bits:.2f} bits" if len(self.icons) > 1 else ""
-        correct = f"{100 * self.proportion_correct:.1f} % correct"
-        return f"Ranking(predicted: {where}, {crowd}, {correct}{spread}{bits}{worst})"
+        alert = f"{100 * self.felt_and_named:.1f} % felt and named"
+        return f"Ranking(predicted: {where}, {crowd}, {alert}{spread}{bits}{worst})"
 
 
 def with_changes(rig: str, changes: Sequence[str]) -> str:

@@ -48,8 +48,9 @@ class IconScore:
         fewer than half of them do.
     peak_change_K, attack_K_per_s, delay_s
         Largest change in K, steepest rate in K/s, and delay behind the skin in s, at the cold and the warm receptor.
-    proportion_correct
-        Share of trials with the right name, 0–1.
+    proportion_correct, felt_and_named
+        Share of trials with the right name, where an icon is announced; and share of plays that are reported and named
+        correctly, where a play that is not felt is a miss, 0–1.
     reachable, safe, reason
         Whether the rig reaches the icon, whether no hard safety limit is exceeded, and why not; None where it is fine.
     rules, pairs
@@ -68,6 +69,7 @@ class IconScore:
     attack_K_per_s: tuple[float, float]
     delay_s: tuple[float | None, float | None]
     proportion_correct: float
+    felt_and_named: float
     reachable: bool
     safe: bool
     reason: str | None
@@ -218,7 +220,7 @@ def assemble(
     """Scores of all icons and of all pairs, in file order."""
     from thermicon.circuit.safety.verdict import judge_safety
 
-    middle, pooled, detected = all_.middle, all_.pooled, all_.detected
+    middle, pooled, detected, alert = all_.middle, all_.pooled, all_.detected, all_.each_felt_and_named.mean(axis=0)
     onsets, channels = all_.detection.onset_s, all_.detection.channel
     compared = PairInputs(traces, percepts, remembered(percepts, observer), observer, memory)
     pairs = [
@@ -249,6 +251,7 @@ def assemble(
                 attack_K_per_s=(attack_K_per_s(trace, "cold"), attack_K_per_s(trace, "warm")),
                 delay_s=(delay_s(trace, "cold"), delay_s(trace, "warm")),
                 proportion_correct=float(pooled[k, k]),
+                felt_and_named=float(alert[k]),
                 reachable=bool(trace.reachable),
                 safe=safety.safe,
                 reason="; ".join(filter(None, (safety.reason, trace.reason))) or None,

@@ -23,6 +23,7 @@ from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..observer.people import People
 from .request import Objective
 
+NOT_TOLD = ("reached", "each_felt_and_named", "confused")
 REACHED_BY = 0.95
 """Share of people who reach what a set is also judged by."""
 
@@ -31,28 +32,33 @@ REACHED_BY = 0.95
 class Appraisal:
     """One set at its own range: the worst pair by median d′, proportion correct, bits, and bits per second.
 
-    `reached` is the proportion correct that 95 % of people reach.
+    `reached` is what 95 % of people feel and name; `each_felt_and_named` (icons,) is that of single icons, and
+    `confused` (icons, icons) how often they are named as each other, the mean of both ways, diagonal: as themselves.
     """
 
     worst_pair: tuple[str, str]
     d_prime: float
+    felt_and_named: float
     proportion_correct: float
     information_bits: float
     bits_per_s: float
     reached: float
+    each_felt_and_named: Array
+    confused: Array
 
     def value(self, objective: Objective) -> float:
         """The number by which an objective judges a set."""
         return {
             "worst": self.d_prime,
-            "correct": self.proportion_correct,
+            "felt-and-named": self.felt_and_named,
+            "named": self.proportion_correct,
             "bits": self.information_bits,
             "bits-per-s": self.bits_per_s,
         }[objective]
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, for JSON."""
-        return {name: value for name, value in asdict(self).items() if name != "reached"}
+        return {name: value for name, value in asdict(self).items() if name not in NOT_TOLD}
 
 
 @checked
@@ -79,18 +85,22 @@ def appraise(
         raise InputError("at least two icons are needed to be distinguished")
     rig, model = Rig.of(rig, icons[0].context.site), crowd.model
     people, nominal = model.people(crowd.people, crowd.seed), model.nominal
-    felt, durations = population_response(icons, rig, people, crowd.tracking, observer=nominal)
+    felt, durations = population_response(icons, rig, people, crowd.tracking, detection=True, observer=nominal)
     d_prime, named = identify(felt, crowd.memory, people, nominal, crowd.seed, task=task)
     each, bits = proportion_correct(named.probability), float(information_bits(named.probability).mean())
+    alert, pooled = felt.detected.probability * np.diagonal(named.probability, axis1=1, axis2=2), named.pooled
     middle = np.median(d_prime, axis=0)
     a, b = nearest_two(middle)
     return Appraisal(
         worst_pair=(icons[a].name, icons[b].name),
         d_prime=float(middle[a, b]),
+        felt_and_named=float(alert.mean()),
         proportion_correct=float(each.mean()),
         information_bits=bits,
         bits_per_s=bits / float(np.mean(durations)),
-        reached=float(np.quantile(each, 1.0 - REACHED_BY)),
+        reached=float(np.quantile(alert.mean(axis=1), 1.0 - REACHED_BY)),
+        each_felt_and_named=alert.mean(axis=0),
+        confused=0.5 * (pooled + pooled.T),
     )
 
 
@@ -109,10 +119,11 @@ def population_response(
     *,
     rate_Hz: float = RATE_HZ,
     end_s: float | None = None,
+    detection: bool = False,
     observer: Observer,
 ) -> tuple[PopulationResponse, Array]:
     """Every person's response to every icon, and durations (s) of the icons."""
     durations = np.array([duration_s(icon, rig) for icon in icons])
     end = run_end_s(durations.tolist(), rate_Hz) if end_s is None else end_s
     played = ReceptorTemperatures.simulated(icons, crowd, rig, observer, end, rate_Hz, tracking)
-    return respond(played, crowd, observer, detection=False), durations
+    return respond(played, crowd, observer, detection=detection), durations

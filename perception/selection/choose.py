@@ -25,7 +25,7 @@ from ..ranking.ranking import Ranking
 from .appraise import REACHED_BY, Appraisal, appraise, nearest_two
 from .goal import Goal
 from .pool import Pool
-from .request import ChoiceError, Objective, Selection
+from .request import ChoiceError, Objective, Selection, check_selection
 from .subset_identification import PEOPLE, RESTARTS, SubsetIdentification, pick
 
 TOLD = ("icons", "objective", "value", "optimal", "bound", "worst_pair", "total_s", "total_J", "pool", "people")
@@ -73,10 +73,10 @@ class Choice:
 
     @property
     def reached(self) -> float:
-        """Proportion correct that 95 % of people reach: with the uncertainty of the model, where there are draws."""
+        """Felt and named that 95 % of people reach: with the uncertainty of the model, where there are draws."""
         if self.new_laboratory is None:
             return self.at_own_range.reached
-        return float(np.quantile(self.new_laboratory.persons["correct"], 1.0 - REACHED_BY))
+        return float(np.quantile(self.new_laboratory.persons["felt_and_named"], 1.0 - REACHED_BY))
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for `rank --json`."""
@@ -159,20 +159,24 @@ class Chooser:
     ) -> None:
         self.job, self.model, self.asked, self.left = job, model, asked, left
         self.whole = Pool.of(job.icons, job.rig, model.nominal, end_s=job.end_s, rate_Hz=RATE_HZ)
-        self.places, self.excluded = self.whole.usable(asked, model.nominal, goal)
-        self.pool = self.whole.some(self.places)
-        self.must = [k for k, icon in enumerate(self.pool.icons) if icon.name in asked.must]
-        self.limits = self.pool.limits(asked.most_s, asked.most_J)
+        check_selection(asked, [icon.name for icon in job.icons])
+        self.goal = goal
 
     def feel(self, felt: FeltResult) -> None:
         """Choose from now on by what some people feel, the first of the job or all of them."""
-        self.felt, self.middle, people = felt, felt.middle, len(felt.pairs)
+        self.felt, self.middle, people, asked = felt, felt.middle, len(felt.pairs), self.asked
+        self.places, self.excluded = self.whole.usable(asked, felt.detected, felt.detection.onset_s, self.goal)
+        self.pool = self.whole.some(self.places)
+        self.must = [k for k, icon in enumerate(self.pool.icons) if icon.name in asked.must]
+        self.limits = self.pool.limits(asked.most_s, asked.most_J)
         self.crowd = Crowd(people, self.job.seed, self.job.tracking, self.job.memory, self.model)
         self.people = self.model.people(people, self.job.seed)
         self.namings = None
-        if self.asked.objective != "worst":
-            d = felt.square(felt.pairs[:PEOPLE])[:, self.places][:, :, self.places]
-            self.namings = SubsetIdentification.of(d, self.people.lapse, self.pool.durations_s, self.job.seed)
+        if asked.objective != "worst":
+            d, reports = felt.square(felt.pairs[:PEOPLE])[:, self.places][:, :, self.places], felt.reports
+            self.namings = SubsetIdentification.of(
+                d, self.people.lapse, reports[:, self.places], self.pool.durations_s, self.job.seed
+            )
 
     def best(self, count: int, draws: int, step: Callable[[], None], restarts: int = RESTARTS) -> Choice | None:
         """The best choice of so many, judged as a set of its own by people and draws; None where none keeps the totals.
@@ -194,7 +198,10 @@ class Chooser:
         found = None
         if draws:
             onset_s = felt.detection.onset_s[chosen]
-            alone = Nominal(own.proportion_correct, own.information_bits, felt.detected[chosen], middle, onset_s)
+            named, alert = own.confused, own.each_felt_and_named
+            alone = Nominal(
+                own.proportion_correct, own.information_bits, felt.detected[chosen], middle, onset_s, named, alert
+            )
             found = new_laboratory(
                 icons, job.rig, job.end_s, self.people, alone, job.memory,
                 tracking=job.tracking, model=self.model, draws=draws, seed=job.seed, task=task, step=step,

@@ -76,15 +76,16 @@ class Frontier(Drawn, Tabled):
         return [
             {
                 "icons": len(point.icons),
+                "felt_and_named": point.at_own_range.felt_and_named,
                 "proportion_correct": point.at_own_range.proportion_correct,
-                "proportion_correct_95_percent_of_people": point.at_own_range.reached,
+                "felt_and_named_95_percent_of_people": point.at_own_range.reached,
                 "information_bits": point.at_own_range.information_bits,
                 "d_prime": point.at_own_range.d_prime,
                 "total_s": point.total_s,
                 "total_J": point.total_J,
                 "proven_best": point.optimal,
                 "names": " ".join(point.icons),
-                "proportion_correct_95_percent_of_people_and_model": point.reached if self.draws else None,
+                "felt_and_named_95_percent_of_people_and_model": point.reached if self.draws else None,
                 "amber": " ".join(self.amber(point)),
                 "meets_goal": self.goals[k].met if self.goals else None,
             }
@@ -104,7 +105,7 @@ def frontier(
     *,
     crowd: Crowd = EVERYBODY,
     most: int = MOST,
-    objective: Objective = "correct",
+    objective: Objective = "felt-and-named",
     goal: Goal | str | None = None,
     parameters: int | None = None,
     progress: Progress | None = None,
@@ -124,10 +125,10 @@ def frontier(
     most
         Largest choice; fewer where the pool has fewer icons that can be played.
     objective
-        What a choice maximises: `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`.
+        What a choice maximises: `felt-and-named`, `named`, `worst` (d′ of the worst pair), `bits` or `bits-per-s`.
     goal
-        What is wanted: icons are left out that miss its `safety`, or for the nominal person its `detected` or `onset`,
-        its `time` and `energy` are kept, and every choice is judged by it.
+        What is wanted: icons are left out that miss its `safety`, `detected` or `onset`, its `time` and `energy` are
+        kept, and every choice is judged by it.
     parameters
         Draws from the posterior for what 95 % of people reach, as in `rank` (None: 128, or as many as there are; 0:
         none).
@@ -174,16 +175,19 @@ def frontier(
     end_s = run_end_s([duration_s(icon, rig) for icon in icons])
     job = Job.of(tuple(icons), rig, crowd, end_s)
     chooser = Chooser(job, crowd.model, asked, wanted)
-    sizes = range(2, min(most, len(chooser.pool)) + 1)
+    sizes = range(2, min(most, len(job.icons)) + 1)
     step = step_counter(progress, job.batches + len(sizes) * (1 + draws))
 
     def judged(felt: FeltResult, draws: int, step: Callable[[], None], restarts: int = RESTARTS) -> Frontier:
         chooser.feel(felt)
         points: list[Choice] = []
         for count in sizes:
-            if (choice := chooser.best(count, draws, step, restarts)) is None:  # nor will more keep the limits
+            choice = chooser.best(count, draws, step, restarts) if count <= len(chooser.pool) else None
+            if choice is None:  # nor will more keep the limits
                 break
             points.append(choice)
+        for _ in range((len(sizes) - len(points)) * (1 + draws)):
+            step()
         if not points:
             raise ChoiceError(chooser.pool.nothing_fits(asked))
         outcome = SetOutcome.of_pool(chooser.whole, felt)

@@ -1,6 +1,6 @@
 """Goals for a set of icons, written in a few words.
 
-A goal has one or more parts, joined by commas: ``correct >= 90 % for 95 % of people, time <= 10 s, safety green``.
+A goal has one or more parts, joined by commas: ``felt-and-named >= 90 % for 95 % of people, time <= 10 s``.
 Rankings are judged by it in `thermicon.perception.selection.goal_result`.
 """
 
@@ -28,7 +28,10 @@ UNIT.2: /%|(ms|min|s|mJ|kJ|J|bits?)(?![a-z_])/
 WORD: /(?!for\b)[a-z_][a-z_'′-]*/
 %ignore /\s+/
 """
-EXAMPLE = "correct >= 90 % for 95 % of people, time <= 10 s, safety green"
+EXAMPLE = "felt-and-named >= 90 % for 95 % of people, time <= 10 s, safety green"
+CORRECT = "correct"
+"""The word for `named` that published experiments use, where it is known that an icon was played."""
+SPACED = re.compile(r"\bfelt +and +named\b")
 
 
 class GoalError(InputError):
@@ -53,7 +56,12 @@ SECONDS = {"s": 1.0, "ms": 1e-3, "min": 60.0}
 BITS = {"bits": 1.0, "bit": 1.0, "": 1.0}
 JOULES = {"J": 1.0, "mJ": 1e-3, "kJ": 1e3}
 QUANTITIES: Mapping[str, Quantity] = {
-    "correct": Quantity(">=", SHARE, 0.0, 1.0, True, "share of icons that are named correctly", "correct >= 90 %"),
+    "felt_and_named": Quantity(
+        ">=", SHARE, 0.0, 1.0, True, "share of plays that are felt and named correctly", "felt-and-named >= 90 %"
+    ),
+    "named": Quantity(
+        ">=", SHARE, 0.0, 1.0, True, "share of announced icons that are named correctly", "named >= 90 %"
+    ),
     "detected": Quantity(">=", SHARE, 0.0, 1.0, True, "detection of the icon detected least", "detected >= 95 %"),
     "bits": Quantity(">=", BITS, 0.0, 20.0, True, "information of the set", "bits >= 2"),
     "d_prime": Quantity(">=", {"": 1.0}, 0.0, 20.0, False, "median d′ of the worst pair", "d_prime >= 2.5"),
@@ -104,7 +112,7 @@ class GoalPart:
             return f"{SAFETY} {VERDICTS[int(self.limit)]}"
         known = QUANTITIES[self.quantity]
         value = f"{self.limit / known.units[self.unit]:g} {self.unit}".rstrip()
-        return f"{self.quantity} {known.comparison} {value}{self.whose}"
+        return f"{word_of(self.quantity)} {known.comparison} {value}{self.whose}"
 
 
 @checked
@@ -123,7 +131,7 @@ class Goal:
 
     Examples
     --------
-    >>> goal = Goal.parse("correct >= 90 % for 95 % of people, safety green")
+    >>> goal = Goal.parse("90 % felt and named for 95 % of people, safety green")
     >>> goal.parts[0].limit, goal.parts[0].people
     (0.9, 0.95)
     """
@@ -146,13 +154,14 @@ class Goal:
     def parse(cls, text: str) -> Goal:
         """Read a goal: parts joined by commas; a `GoalError` says what cannot be read, and where.
 
-        A part is a quantity (`correct`, `detected`, `bits`, `d_prime`, `time`, `energy`, `onset`, `count`), its
-        comparison, a number with its unit, and for the first three `for N % of people`; or number, unit and quantity,
-        as in `90 % correct`; or `safety green`, `safety amber`.
+        A part is a quantity (`felt-and-named`, `named`, `detected`, `bits`, `d_prime`, `time`, `energy`, `onset`,
+        `count`), its comparison, a number with its unit, and for the first four `for N % of people`; or number, unit
+        and quantity, as in `90 % felt-and-named`; or `safety green`, `safety amber`. `correct` is read as `named`.
         """
         from lark import Lark
         from lark.exceptions import UnexpectedInput
 
+        text = SPACED.sub("felt-and-named", text)
         try:
             tree = Lark(GRAMMAR, parser="lalr", propagate_positions=True).parse(text)
         except UnexpectedInput as problem:
@@ -194,6 +203,22 @@ class Goal:
         return f"Goal({self.text})"
 
 
+def word_of(quantity: str) -> str:
+    """The word of a goal for a quantity.
+
+    >>> word_of("felt_and_named"), word_of("d_prime")
+    ('felt-and-named', 'd_prime')
+    """
+    return quantity if quantity == "d_prime" else quantity.replace("_", "-")
+
+
+def other_word(goal: str) -> str | None:
+    """What `correct` in the text of a goal is read as, and what may be meant; None where it does not say so."""
+    if not re.search(rf"\b{CORRECT}\b", goal):
+        return None
+    return f"{CORRECT} is read as named, for which a play that is not felt is no miss; for that write felt-and-named"
+
+
 def _part(number: int, text: str, tree: Any) -> GoalPart:
     where = f"goal, part {number} {text[tree.meta.start_pos : tree.meta.end_pos]!r}"
     name = _name(tree.children[2 if tree.data == "stated" else 0])
@@ -203,16 +228,20 @@ def _part(number: int, text: str, tree: Any) -> GoalPart:
             raise GoalError(f"{where}: safety is {' or '.join(VERDICTS)}, such as 'safety green'")
         return GoalPart(SAFETY, float(VERDICTS.index(wanted)))
     if name not in QUANTITIES:
-        raise GoalError(f"{where}: there is no quantity {name!r}: {did_you_mean(name, {*QUANTITIES, SAFETY})}")
+        raise GoalError(
+            f"{where}: there is no quantity {name!r}: {did_you_mean(name, {*map(word_of, QUANTITIES), SAFETY})}"
+        )
     known = QUANTITIES[name]
     if tree.data == "verdict" or (tree.data == "exactly" and name != "count"):
-        raise GoalError(f"{where}: {name} needs a comparison and a number, such as '{known.example}'")
+        raise GoalError(f"{where}: {word_of(name)} needs a comparison and a number, such as '{known.example}'")
     comparison, value, unit, people = _pieces(tree)
     if comparison is not None and comparison != known.comparison:
-        raise GoalError(f"{where}: {name} ({known.meaning}) is wanted {known.comparison} a number, not {comparison}")
+        raise GoalError(
+            f"{where}: {word_of(name)} ({known.meaning}) is wanted {known.comparison} a number, not {comparison}"
+        )
     if unit not in known.units:
         units = " or ".join(each or "no unit" for each in known.units)
-        raise GoalError(f"{where}: {name} is given in {units}, not {unit or 'without a unit'}")
+        raise GoalError(f"{where}: {word_of(name)} is given in {units}, not {unit or 'without a unit'}")
     if unit == "%" and 0.0 < value < 1.0:
         raise GoalError(
             f"{where}: {value:g} % is next to nothing: write {100.0 * value:g} %, or {value:g} without unit"
@@ -227,9 +256,9 @@ def _part(number: int, text: str, tree: Any) -> GoalPart:
             f"must be above {low}" if math.isinf(known.most) else f"lies in {low.removesuffix(first).strip()} to {high}"
         )
         cure = f": write it as {value:g} %" if unit == "" and "%" in known.units and value <= 100.0 else ""
-        raise GoalError(f"{where}: {name} {lies}{cure}")
+        raise GoalError(f"{where}: {word_of(name)} {lies}{cure}")
     if people is not None and not known.people:
-        raise GoalError(f"{where}: {name} is the same for all people: leave out 'for ... of people'")
+        raise GoalError(f"{where}: {word_of(name)} is the same for all people: leave out 'for ... of people'")
     if people is not None and not 0.5 <= people < 1.0:
         raise GoalError(f"{where}: a goal is set for 50 % of people or more, and less than 100 %")
     return GoalPart(name, limit, people)
@@ -237,7 +266,8 @@ def _part(number: int, text: str, tree: Any) -> GoalPart:
 
 def _name(word: Any) -> str:
     """The quantity that a word names."""
-    return str(word).replace("-", "_").replace("d'", "d_prime").replace("d′", "d_prime")
+    name = str(word).replace("-", "_").replace("d'", "d_prime").replace("d′", "d_prime")
+    return "named" if name == CORRECT else name
 
 
 def _pieces(tree: Any) -> tuple[str | None, float, str, float | None]:

@@ -29,18 +29,21 @@ TOLERANCE = 1e-9
 class SetOutcome:
     """The scores by which goals are judged: of a set, its icons, and its people.
 
-    `names` of all icons; `correct` and `bits` are means over people, `d_prime` that of the nearest pair; `detected`,
+    `names` of all icons; `felt_and_named` (of single icons too: `alert`), `named` and `bits` are means over people,
+    `d_prime` that of the nearest pair; `detected`,
     `onset_s` (NaN: not felt), `durations_s` and `energies_J` (NaN on a thermode, which states none) of every icon.
     `worst_pair` is confused most, `nearest_pair` has the smallest d′ (None: one icon). `amber` and `red` pass a soft
     and a hard limit of safety; `unreached` icons are no matter of safety, which judges what the rig plays of them.
-    `persons` has values of `correct`, `detected` (of the icon detected least) and `bits` for single people (n,), of all
-    draws together; it is empty without draws.
+    `persons` has values of `felt_and_named`, `named`, `detected` (of the icon detected least) and `bits` for single
+    people (n,), of all draws together; it is empty without draws.
     """
 
     names: tuple[str, ...]
-    correct: float
+    felt_and_named: float
+    named: float
     bits: float
     d_prime: float
+    alert: Array
     detected: Array
     onset_s: Array
     durations_s: Array
@@ -60,9 +63,11 @@ class SetOutcome:
         worst = min(ranking.pairs, key=lambda pair: (-pair.confused_probability, pair.a, pair.b), default=None)
         return cls(
             names=ranking.labels,
-            correct=ranking.proportion_correct,
+            felt_and_named=ranking.felt_and_named,
+            named=ranking.proportion_correct,
             bits=ranking.information_bits,
             d_prime=math.nan if nearest is None else nearest.d_prime,
+            alert=np.array([icon.felt_and_named for icon in icons]),
             detected=felt.detected,
             onset_s=felt.detection.onset_s,
             durations_s=np.array([icon.duration_s for icon in icons]),
@@ -79,17 +84,20 @@ class SetOutcome:
     def of_pool(cls, pool: Pool, felt: FeltResult) -> SetOutcome:
         """Scores of choices out of a pool of which nobody named all icons."""
         names, energies_J = tuple(icon.name for icon in pool.icons), pool.energies_J
-        where = felt.detected, felt.detection.onset_s, pool.durations_s, energies_J
-        return cls(names, math.nan, math.nan, math.nan, *where, None, None, pool.amber, (), {})
+        unknown = np.full(len(names), math.nan)
+        where = unknown, felt.detected, felt.detection.onset_s, pool.durations_s, energies_J
+        return cls(names, math.nan, math.nan, math.nan, math.nan, *where, None, None, pool.amber, (), {})
 
     def of_choice(self, choice: Choice) -> SetOutcome:
         """The same for the chosen icons alone, as a set of their own."""
         places, own = [self.names.index(name) for name in choice.icons], choice.at_own_range
         return SetOutcome(
             names=choice.icons,
-            correct=own.proportion_correct,
+            felt_and_named=own.felt_and_named,
+            named=own.proportion_correct,
             bits=own.information_bits,
             d_prime=own.d_prime,
+            alert=own.each_felt_and_named,
             detected=self.detected[places],
             onset_s=self.onset_s[places],
             durations_s=self.durations_s[places],
@@ -206,7 +214,8 @@ def _value(part: GoalPart, outcome: SetOutcome) -> float:
     if part.people is not None:
         return float(np.quantile(outcome.persons[part.quantity], 1.0 - part.people))
     return {
-        "correct": lambda: outcome.correct,
+        "felt_and_named": lambda: outcome.felt_and_named,
+        "named": lambda: outcome.named,
         "bits": lambda: outcome.bits,
         "d_prime": lambda: outcome.d_prime,
         "detected": lambda: float(outcome.detected.min()),
@@ -226,7 +235,12 @@ def _binding(part: GoalPart, outcome: SetOutcome) -> str:
     if part.quantity == "count":
         lost = [name for name in outcome.names if name in outcome.red or name in outcome.unreached]
         return f"{listed(lost)} cannot be played" if lost else "the set has fewer icons"
-    if part.quantity in ("correct", "bits", "d_prime"):
+    if part.quantity == "felt_and_named":
+        worst = int(outcome.alert.argmin())
+        share = outcome.detected[worst]
+        if 1.0 - share > 1.0 - outcome.alert[worst] / max(share, 1e-9):  # more plays are not felt than misnamed
+            return f"{outcome.names[worst]} is felt in {100.0 * share:.0f} % of plays"
+    if part.quantity in ("felt_and_named", "named", "bits", "d_prime"):
         apart = part.quantity == "d_prime"
         if (pair := outcome.nearest_pair if apart else outcome.worst_pair) is None:
             return "there is one icon only"

@@ -122,17 +122,23 @@ class Pool:
         found = zip(self.icons, self.traces, strict=True)
         return tuple(icon.name for icon, trace in found if objection(trace) is None and objection(trace, soft=True))
 
-    def objections(self, goal: Goal | None, observer: Observer, must: Sequence[str] = ()) -> tuple[str | None, ...]:
+    def felt_by(self, observer: Observer) -> tuple[Array, Array]:
+        """How often a nominal person reports each icon, and when, in s (NaN: not)."""
+        felt = detect(self.cold, self.warm, self.dt_s, observer, path_m=observer.path_m(self.rig.site))
+        return felt.probability, felt.onset_s
+
+    def objections(
+        self, goal: Goal | None, detected: Array, onset_s: Array, must: Sequence[str] = ()
+    ) -> tuple[str | None, ...]:
         """Objections to each icon: it cannot be played, or misses what a goal asks of single icons.
 
-        Unless the goal says how often an icon is to be detected, the nominal person detects it in half of the trials,
-        but for those that `must` be in.
+        `detected` (icons,) is the mean over people, `onset_s` (icons,) theirs. Unless the goal says how often an icon
+        is to be detected, half of plays are reported, but for those that `must` be in.
         """
         green = goal is not None and goal.of(SAFETY) == 0.0
         found = [objection(trace, soft=green) for trace in self.traces]
         wanted, onset = (None, None) if goal is None else (goal.of("detected"), goal.of("onset"))
-        felt = detect(self.cold, self.warm, self.dt_s, observer, path_m=observer.path_m(self.rig.site))
-        for place, (share, felt_s) in enumerate(zip(felt.probability.tolist(), felt.onset_s.tolist(), strict=True)):
+        for place, (share, felt_s) in enumerate(zip(detected.tolist(), onset_s.tolist(), strict=True)):
             least = wanted if wanted is not None else 0.0 if self.icons[place].name in must else FELT_FROM
             if found[place] is not None:
                 continue
@@ -143,7 +149,7 @@ class Pool:
         return tuple(found)
 
     def usable(
-        self, asked: Selection, observer: Observer, goal: Goal | None = None
+        self, asked: Selection, detected: Array, onset_s: Array, goal: Goal | None = None
     ) -> tuple[list[int], tuple[tuple[str, str], ...]]:
         """Places of the icons that can be chosen, and why others cannot: they move like an earlier one, or have an
         objection.
@@ -158,7 +164,7 @@ class Pool:
             )
         shapes: dict[object, str] = {}
         excluded: dict[str, str] = {}
-        objections = self.objections(goal, observer, asked.must)
+        objections = self.objections(goal, detected, onset_s, asked.must)
         for k in sorted(range(len(self)), key=lambda k: (names[k] not in asked.must, k)):
             why = objections[k]
             twin = None if why else shapes.setdefault(_shape_of(self.icons[k], self.rig), names[k])

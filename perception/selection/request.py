@@ -9,7 +9,7 @@ from thermicon.icons.model.arguments import InputError, checked
 from thermicon.icons.near_words import did_you_mean
 from thermicon.icons.number_text import count_of
 
-Objective = Literal["worst", "correct", "bits", "bits-per-s"]
+Objective = Literal["worst", "felt-and-named", "named", "bits", "bits-per-s"]
 
 
 class ChoiceError(InputError):
@@ -30,7 +30,7 @@ class Selection:
     count
         Number of icons, 2 or more.
     objective
-        What is maximised: `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`.
+        What is maximised: `worst` (d′ of the worst pair), `felt-and-named`, `named`, `bits` or `bits-per-s`.
     must
         Names of icons that are in any choice.
     most_s, most_J

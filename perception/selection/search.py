@@ -26,7 +26,7 @@ from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..ranking.rank import rank
 from .appraise import Appraisal, appraise
 from .candidates import Candidate, at_ends, found_set, names_of
-from .goal import Goal, GoalPart
+from .goal import Goal, GoalPart, word_of
 from .request import Objective
 from .search_run import PEOPLE, Evaluator, SearchRun
 
@@ -37,7 +37,7 @@ PER_ROUND = 3
 """Each round tries 16 variants per icon on the nominal person; a third as many rounds try 4 on a few people."""
 WIDEST, REFINED = 0.25, 0.05
 """First steps of both climbs, as shares of the range of a parameter."""
-JUDGED = ("correct", "bits", "d_prime")
+JUDGED = ("felt_and_named", "named", "bits", "d_prime")
 """Quantities that sets are chosen by for their people's mean; `detected` only for a share of people."""
 
 
@@ -110,13 +110,13 @@ def search(
     count
         Number of icons in all; None: one per family.
     objective
-        What is maximised: `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`.
+        What is maximised: `worst` (d′ of the worst pair), `felt-and-named`, `named`, `bits` or `bits-per-s`.
     evaluations
         Number of icons that are evaluated for the nominal person.
     goal
         What is wanted of the set: its `count`, `time` and `energy` are kept, and icons left out that miss its
-        `safety`, or for the nominal person its `detected` or `onset`. Of the sets held at the end, the one that comes
-        nearest to its other parts is the result. `rank` says whether the result meets it.
+        `safety`, `detected` or `onset`, the last for the nominal person. Of the sets held at the end, the one nearest
+        to its other parts is the result. `rank` says whether the result meets it.
     parameters
         Draws from the posterior, as in `rank`, for a goal for a share of people (None: 128, or as many as there are).
     progress
@@ -202,7 +202,7 @@ def search(
         refined=run.tried - screened,
         at_ends=at_ends(best),
         finalists=len(finalists),
-        chosen_by=" and ".join(part.quantity + part.whose for part in parts) or objective,
+        chosen_by=" and ".join(word_of(part.quantity) + part.whose for part in parts) or objective,
     )
 
 
@@ -213,7 +213,12 @@ def _merit(
 
     `persons` are values of single people of all draws, as in `rank`, for parts about a share of people.
     """
-    means = {"correct": scores.proportion_correct, "bits": scores.information_bits, "d_prime": scores.d_prime}
+    means = {
+        "felt_and_named": scores.felt_and_named,
+        "named": scores.proportion_correct,
+        "bits": scores.information_bits,
+        "d_prime": scores.d_prime,
+    }
     values = [
         means[part.quantity] if part.people is None else float(np.quantile(persons[part.quantity], 1.0 - part.people))
         for part in parts

@@ -52,27 +52,30 @@ class Evaluator:
         """Most time, s, and energy, J, of all icons together."""
         return (None, None) if self.goal is None else self.goal.totals
 
-    def felt(self, candidates: Sequence[Candidate]) -> tuple[Pool, Array]:
-        """The candidates on the nominal rig, and their d′ (people, icons, icons) from memory."""
+    def felt(self, candidates: Sequence[Candidate]) -> tuple[Pool, Array, Array]:
+        """The candidates on the nominal rig, their d′ (people, icons, icons) from memory, and how often each person
+        reports them, (people, icons).
+        """
         pool = Pool.of([candidate.icon for candidate in candidates], self.rig, self.observer)
         if self.crowd is None:
-            return pool, pool.dprimes(pool, self.memory, self.observer)[None]
+            return pool, pool.dprimes(pool, self.memory, self.observer)[None], pool.felt_by(self.observer)[0][None]
         how = self.rig, self.observer, pool.end_s, POOL_HZ, self.tracking
         met = ReceptorTemperatures.simulated(pool.icons, self.crowd, *how)
-        felt = respond(met, self.crowd, self.observer, detection=False)
-        return pool, memory_dprime(felt, self.memory, self.crowd.memory, self.observer, USUAL)
+        felt = respond(met, self.crowd, self.observer)
+        apart = memory_dprime(felt, self.memory, self.crowd.memory, self.observer, USUAL)
+        return pool, apart, felt.detected.probability
 
-    def namings(self, d_prime: Array, pool: Pool) -> SubsetIdentification:
+    def namings(self, d_prime: Array, reports: Array, pool: Pool) -> SubsetIdentification:
         """The namings of every person, for the objectives that count errors."""
         lapse = np.array([self.observer.lapse]) if self.crowd is None else self.crowd.lapse
-        return SubsetIdentification.of(d_prime, lapse, pool.durations_s, self.seed)
+        return SubsetIdentification.of(d_prime, lapse, reports, pool.durations_s, self.seed)
 
     def score(self, candidates: Sequence[Candidate]) -> float:
         """The objective of a whole set."""
-        pool, d = self.felt(candidates)
+        pool, d, reports = self.felt(candidates)
         if self.objective == "worst":
             return nearest_pair(np.median(d, axis=0), range(len(pool)))
-        return self.namings(d, pool).score(range(len(pool)), self.objective)
+        return self.namings(d, reports, pool).score(range(len(pool)), self.objective)
 
 
 class SearchRun:
@@ -126,11 +129,16 @@ class SearchRun:
         Where each family gives one icon, its members are `ALIKE` in the median.
         """
         self.tried += len(candidates)
-        pool, d = judge.felt(candidates)
-        good = self._good(pool, judge)
+        pool, d, reports = judge.felt(candidates)
+        good = self._good(pool, reports, judge)
         if len(good) < self.count:
             return None
-        left, d, pool = [candidates[k] for k in good], d[:, good][:, :, good], pool.some(good)
+        left, d, pool, reports = (
+            [candidates[k] for k in good],
+            d[:, good][:, :, good],
+            pool.some(good),
+            reports[:, good],
+        )
         family = np.array([-1 if one.family is None else self.families.index(one.family) for one in left])
         middle, limits = np.median(d, axis=0), pool.limits(*judge.totals)
         if self.each:
@@ -141,18 +149,19 @@ class SearchRun:
         chosen = list(first.chosen)
         if judge.objective != "worst":
             begin = chosen if held is None else range(self.count)
-            chosen = climb(judge.namings(d, pool), begin, judge.objective, middle, self.must, limits)[0]
+            chosen = climb(judge.namings(d, reports, pool), begin, judge.objective, middle, self.must, limits)[0]
         return [left[k] for k in sorted(chosen, key=lambda k: (k not in self.must, family[k], k))]
 
-    def _good(self, pool: Pool, judge: Evaluator) -> list[int]:
-        reasons = pool.objections(judge.goal, judge.observer)
+    def _good(self, pool: Pool, reports: Array, judge: Evaluator) -> list[int]:
+        reasons = pool.objections(judge.goal, reports.mean(axis=0), pool.felt_by(judge.observer)[1])
         return [k for k, reason in enumerate(reasons) if k in self.must or reason is None]
 
     def _nothing(self, judge: Evaluator, candidates: list[Candidate]) -> str:
         """Why no set of the first pool can be chosen."""
-        pool, _ = judge.felt(candidates)
-        bad = [reason for reason in pool.objections(judge.goal, judge.observer) if reason is not None]
-        left = pool.some(self._good(pool, judge))
+        pool, _, reports = judge.felt(candidates)
+        objections = pool.objections(judge.goal, reports.mean(axis=0), pool.felt_by(judge.observer)[1])
+        bad = [reason for reason in objections if reason is not None]
+        left = pool.some(self._good(pool, reports, judge))
         first = f", the first of which {bad[0]}" if bad else ""
         over = f"; the totals: {left.totals_text(self.count, *judge.totals)}" if any(judge.totals) else ""
         return (

@@ -96,9 +96,9 @@ def _replaced(half: Any, push: Any, lapse: Any, chosen: Any, place: int, others:
     return each
 
 
-def _right(half: Any, push: Any, lapse: Any, chosen: Any, place: int, others: Any) -> Any:
-    """The proportions correct (others, people) of `replaced` alone, in loops that the processor does several steps of
-    at once.
+def _right(half: Any, push: Any, lapse: Any, reports: Any, chosen: Any, place: int, others: Any) -> Any:
+    """The proportions correct (others, people) of `replaced` alone, each times how often a person reports the icon, in
+    loops that the processor does several steps of at once.
     """
     people, draws, size = push.shape[0], push.shape[2], chosen.size
     correct = np.empty((others.size, people))
@@ -128,7 +128,8 @@ def _right(half: Any, push: Any, lapse: Any, chosen: Any, place: int, others: An
                 counts[place] += -other[s] <= nearest[s]
             total = 0.0
             for a in range(size):
-                total += (1.0 - lapse[p]) * counts[a] / draws + lapse[p] / size
+                icon = others[k] if a == place else chosen[a]
+                total += reports[p, icon] * ((1.0 - lapse[p]) * counts[a] / draws + lapse[p] / size)
             correct[k, p] = total / size
     return correct
 
@@ -148,23 +149,25 @@ _compile: Any = kernel(nogil=True)
 _approach: Any = _compile(_to_nearest)
 tally: Callable[..., tuple[float, float]] = _compile(_tally)
 replaced: Callable[[Array, Array, Array, Any, int, Any], Array] = _compile(_replaced)
-right: Callable[[Array, Array, Array, Any, int, Any], Array] = _compile(_right)
+right: Callable[[Array, Array, Array, Array, Any, int, Any], Array] = _compile(_right)
 
 
 @dataclass(frozen=True, slots=True)
 class SubsetIdentification:
     """A pool as some people feel it: `half` (people, n, n) half squared distances, `push` (people, n, draws) noise
-    projected on the points, `lapse` (people,), `durations_s` (n,). A subset scores the mean of its people.
+    projected on the points, `lapse` (people,), `reports` (people, n) how often icons are reported, `durations_s` (n,).
+    A subset scores the mean of its people.
     """
 
     half: Array
     push: Array
     lapse: Array
+    reports: Array
     durations_s: Array
 
     @classmethod
     def of(
-        cls, d_prime: Array, lapse: Array, durations_s: Array, seed: int, most: int = PEOPLE
+        cls, d_prime: Array, lapse: Array, reports: Array, durations_s: Array, seed: int, most: int = PEOPLE
     ) -> SubsetIdentification:
         """The first `most` people of d′ (people, n, n); a person's noise does not depend on how many they are."""
         with quiet_blas():
@@ -174,21 +177,25 @@ class SubsetIdentification:
         push = np.einsum("psa,pna->pns", noise, points)
         own = (points**2).sum(axis=-1)
         half = 0.5 * (own[:, :, None] + own[:, None, :]) - np.einsum("pia,pja->pij", points, points)
-        return cls(half, np.concatenate([push, -push], axis=2), np.asarray(lapse[:most]), durations_s)
+        return cls(half, np.concatenate([push, -push], axis=2), np.asarray(lapse[:most]), reports[:most], durations_s)
 
     def __len__(self) -> int:
         return int(self.half.shape[1])
 
     def score(self, chosen: Sequence[int], objective: Objective) -> float:
-        """Proportion correct, bits, or bits a second of the chosen: mean over people."""
+        """Felt and named, named, bits, or bits a second of the chosen: mean over people."""
         # The last is "replaced" by itself; of equally near ones it wins no more often than where it stands.
         return float(self.replaced(chosen, len(chosen) - 1, chosen[-1:], objective)[0])
 
     def replaced(self, chosen: Sequence[int], place: int, others: Sequence[int], objective: Objective) -> Array:
         """Scores (others,) of the chosen with the one at a place replaced by each of `others`."""
         index, tried = np.asarray(chosen, dtype=np.int64), np.asarray(others, dtype=np.int64)
-        asked = self.half, self.push, self.lapse, index, place, tried
-        each = right(*asked) if objective == "correct" else replaced(*asked)[1]
+        of, trial = (self.half, self.push, self.lapse), (index, place, tried)
+        if objective in ("felt-and-named", "named"):
+            reports = self.reports if objective == "felt-and-named" else np.ones_like(self.reports)
+            each = right(*of, reports, *trial)
+        else:
+            each = replaced(*of, *trial)[1]
         # A running sum does not depend on how many are scored together, so that equal choices have equal scores.
         mean = np.asarray(np.add.accumulate(each, axis=-1)[..., -1] / each.shape[-1])
         if objective != "bits-per-s":
@@ -280,9 +287,11 @@ def _climbed(
 
 def ceiling(namings: SubsetIdentification, count: int, objective: Objective) -> float:
     """The score of `count` icons that are never confused: lapses are answered at random."""
-    kept = float(np.mean(1.0 - namings.lapse))
-    if objective == "correct":
-        return kept + (1.0 - kept) / count
+    kept = 1.0 - namings.lapse
+    if objective in ("felt-and-named", "named"):
+        reports = namings.reports if objective == "felt-and-named" else np.ones_like(namings.reports)
+        best = np.sort(reports, axis=1)[:, -count:].mean(axis=1)
+        return float(np.mean(best * (kept + (1.0 - kept) / count)))
     shortest = np.sort(namings.durations_s)[:count].mean()
     return math.log2(count) if objective == "bits" else float(math.log2(count) / shortest)
 
