@@ -25,7 +25,7 @@ BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
 MOST_CONSTANTS = 12
 """Constants in the table of what carries the doubt; a file has them all."""
-RANKED = ("icon", "detected", "onset", "channel", "felt and named", "most confused with")
+RANKED = ("icon", "detected", "onset", "channel", "felt & named", "most confused with")
 NAMED = "named"
 A_POINT = 0.01
 """Where felt and named is less than named by more for any icon, both are shown."""
@@ -158,13 +158,15 @@ def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = N
     chosen = () if made.choice is None else made.choice.icons
     icons = sorted(icons, key=lambda icon: icon.name not in chosen)
     both = differs(icons)
-    heads = (*RANKED[:-1], NAMED, RANKED[-1]) if both else RANKED
+    brief = both and most is not None  # the channel gives way, so that a row has 80 columns
+    heads = tuple(head for head in RANKED if head != "channel" or not brief)
+    heads = (*heads[:-1], NAMED, heads[-1]) if both else heads
     rows: list[tuple[str | Cell, ...]] = [
         (
             f"{'✓ ' * (icon.name in chosen)}{icon.name}{' *' * (place >= apart)}",
             percent(icon.detected_probability),
             seconds(icon.onset_s),
-            icon.channel or "–",
+            *([] if brief else [icon.channel or "–"]),
             Cell(percent(icon.felt_and_named), "strong"),
             *([percent(icon.proportion_correct)] if both else []),
             rival(made.ranking, labels.index(icon.name)),
@@ -173,7 +175,7 @@ def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = N
     ]
     if most is not None and len(rows) > (most := max(most, len(chosen))) + 1:
         rows = [*rows[:most], (f"and {len(rows) - most} more", *[""] * (len(heads) - 1))]
-    return grid(heads, rows, ("detected", "onset", "felt and named", NAMED), heads, apart)
+    return grid(heads, rows, ("detected", "onset", RANKED[4], NAMED), heads, apart)
 
 
 def rival(ranking: Ranking, place: int) -> str:
