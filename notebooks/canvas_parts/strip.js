@@ -4,13 +4,13 @@ class Strip {
   /** `onGoal(text)` receives a goal that was typed. */
   constructor(onGoal, say) {
     Object.assign(this, { say, said: null });
-    const input = { type: "text", class: "tm-goal", placeholder: "correct >= 90 %", title: "goal of the set, kept in its text", maxlength: 300 };
+    const input = { type: "text", class: "tm-goal", placeholder: "90 % felt-and-named", title: "goal of the set, kept in its text", maxlength: 300 };
     this.goal = make("input", { ...input, onchange: () => onGoal(this.goal.value) });
     const number = () => make("b", {}, "–");
     Object.assign(this, { whole: number(), icon: number(), felt: number(), met: make("b", { class: "tm-met" }) });
     this.element = make("div", { class: "tm-strip", role: "group", "aria-label": "Predictions", "data-lm-suppress-shortcuts": "true" },
-      make("span", {}, "set ", this.whole, " correct"), make("label", {}, "goal ", this.goal, this.met),
-      make("span", {}, "icon ", this.icon, " correct, felt by ", this.felt));
+      make("span", {}, "set ", this.whole, " felt and named"), make("label", {}, "goal ", this.goal, this.met),
+      make("span", {}, "icon ", this.icon, " felt and named, felt by ", this.felt));
   }
 
   show(given) {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from thermicon.icons.model.arguments import checked
-from thermicon.perception.ranking.swept import AGE, ALL, MEASURES, SITE
+from thermicon.perception.ranking.swept import AGE, ALL, MEASURES, OF_95, SITE
 
 from ..files.outputs import TRACE_SUFFIXES, check_output, check_separate
 from ..messages import Progress, fail, note, progress_bar, usage
@@ -130,7 +131,7 @@ def sweep(
     for value in values if key in (SITE, AGE) else values[:1]:
         check_conditions({key: value}, rig)
     if key == AGE and measured is None:
-        raise ValueError(f"{AGE} changes what people perceive only; say what to measure, such as correct")
+        raise ValueError(f"{AGE} changes what people perceive only; say what to measure, such as felt_and_named")
     rows: list[dict[str, Any]] = []
     for value in values:
         runs = [{"icon": icon.name, key: value, **_run(icon, rig, {key: value}, tail_s)} for icon in played]
@@ -204,8 +205,8 @@ def sweep_command(
         str | None,
         opt(
             "NAME,NAME",
-            "Also predict what people perceive: correct, correct_95 (what 95 % of people reach), detected, onset, "
-            "d_prime, bits.",
+            "Also predict what people perceive: felt-and-named, named, both also with _95 (what 95 % of people reach), "
+            "detected, onset, d_prime, bits.",
         ),
     ] = None,
     people: People = 60,
@@ -224,7 +225,7 @@ def sweep_command(
     key, values = read_vary(vary[0])
     what = () if measure is None else read_measures(measure, intervals or 0)
     if not what and key == AGE:
-        raise usage(f"{AGE} changes what people perceive only; add --measure correct", "--vary")
+        raise usage(f"{AGE} changes what people perceive only; add --measure felt-and-named", "--vary")
     if output is None and figure.figure is None and not what:
         raise usage("give -o OUT for the table, --figure, or --measure to print what people perceive", "-o")
     if output is not None:
@@ -252,7 +253,11 @@ def sweep_command(
 
 def read_measures(text: str, intervals: int) -> tuple[str, ...]:
     """Read ``--measure``, beside the draws for intervals; what cannot be is a usage error."""
-    names = tuple(name.strip() for name in text.split(","))
+    from thermicon.perception.selection.goal import other_word
+
+    if (offer := other_word(text)) is not None:
+        note(offer)
+    names = tuple(re.sub(r"^correct(?![a-z])", "named", name.strip().replace("-", "_")) for name in text.split(","))
     for name in names:
         if name not in MEASURES:
             raise usage(f"{name!r} is not one of {', '.join(MEASURES)}", "--measure")
@@ -260,8 +265,8 @@ def read_measures(text: str, intervals: int) -> tuple[str, ...]:
         raise usage(f"{text!r}: the same quantity is given twice", "--measure")
     if intervals == 1:
         raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--intervals")
-    if intervals == 0 and "correct_95" in names:
-        raise usage("correct_95 is about people and model together, and needs 2 draws or more", "--intervals")
+    if intervals == 0 and (reached := [name for name in names if name in OF_95]):
+        raise usage(f"{reached[0]} is about people and model together, and needs 2 draws or more", "--intervals")
     return names
 
 

@@ -42,14 +42,16 @@ PANELS = (
 ALIKE, MISS_K = 1e-3, 1e-3
 """What differs by less than 0.1 % is the same at all values; and so are misses within 1 mK."""
 LABELS = {
-    "correct": "correct (%)",
-    "correct_95": "correct, 95 % of people (%)",
+    "felt_and_named": "felt and named (%)",
+    "felt_and_named_95": "felt and named, 95 % of people (%)",
+    "named": "named (%)",
+    "named_95": "named, 95 % of people (%)",
     "detected": "detected (%)",
     "onset": "onset (s)",
     "d_prime": "d′ of the nearest icon",
     "bits": "information (bits)",
 }
-SHARES = ("correct", "detected")
+SHARES = ("felt_and_named", "named", "detected")
 INTERVAL, MISSED = "95 % interval, new laboratory", "not reached"
 BAND = 0.065
 """How dark the band of an icon is; that of the set is twice as dark."""

@@ -23,7 +23,8 @@ MOST_EDITS = 20
 NAMES = {f"laboratory, {channel}": f"sensitivity to {channel} in your laboratory" for channel in ("cold", "warm")}
 DETECTED = (
     "Detected is the share of these people's trials that end in a report; onset is the median time of those reports, "
-    "channel that of most of them, from 50 % on."
+    "channel that of most of them, from 50 % on. Felt and named is, for each person, the share of plays that are reported "
+    "times that of right names, taken as independent given the person; named is for icons that are announced."
 )
 
 
@@ -91,15 +92,22 @@ def caveat(ranking: Ranking) -> str:
 
 
 def number_points(made: SetReport) -> Iterator[str]:
-    """Yield the scores of the set: proportion correct and information, with their intervals."""
+    """Yield the scores of the set: felt and named, named, and information, with their intervals."""
     ranking, elsewhere, where = made.ranking, made.ranking.new_laboratory, laboratory(made.ranking)
-    spread = percent_span(*ranking.proportion_correct_interval)
-    yield f"{percent(ranking.proportion_correct)} correct" + _range(ranking, spread)
+    both = (
+        ("felt and named", ranking.felt_and_named, ranking.felt_and_named_interval),
+        ("named", ranking.proportion_correct, ranking.proportion_correct_interval),
+    )
+    for word, share, spread in both:
+        yield f"{percent(share)} {word}" + _range(ranking, percent_span(*spread))
     if ranking.observer != "shipped":
         yield f"predicted with the observer of {ranking.observer}"
     if elsewhere is not None:
         people = count_of(elsewhere.people, "person", "people")
-        yield f"mean of {people} in {where} (95 %): {percent_span(*elsewhere.proportion_correct)}"
+        ends = (
+            f"{percent_span(*elsewhere.felt_and_named)} felt and named, {percent_span(*elsewhere.proportion_correct)}"
+        )
+        yield f"mean of {people} in {where} (95 %): {ends} named"
     elif made.choice is None:
         yield "no interval for a new laboratory: --intervals 2 or more and an observer with draws (.csv) give one"
     if len(ranking.icons) == 1:

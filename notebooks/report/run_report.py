@@ -20,8 +20,10 @@ if TYPE_CHECKING:
 MOST_SHOWN = 60
 """Plays in the table of a session; all of them are in the JSON."""
 PRINTED: Mapping[str, tuple[float, str, str]] = {
-    "correct": (100.0, ".0f", " %"),
-    "correct_95": (100.0, ".0f", " %"),
+    "felt_and_named": (100.0, ".0f", " %"),
+    "felt_and_named_95": (100.0, ".0f", " %"),
+    "named": (100.0, ".0f", " %"),
+    "named_95": (100.0, ".0f", " %"),
     "detected": (100.0, ".0f", " %"),
     "onset": (1.0, ".2f", " s"),
     "d_prime": (1.0, ".1f", ""),
@@ -152,7 +154,8 @@ def sweep_lines(frame: pd.DataFrame, names: Sequence[str], key: str) -> Iterator
         missing = len(rows) - len(ran)
         parts += [f"{missing} of {len(rows)} values {'is' if missing == 1 else 'are'} not possible"] * (missing > 0)
         yield f"{name}: {', '.join(parts)}"
-    for column, words in (("correct", "correct"), ("correct_95", "correct for 95 % of people")):
+    for column in ("felt_and_named", "felt_and_named_95", "named", "named_95"):
+        words = column.removesuffix("_95").replace("_", " ") + " for 95 % of people" * column.endswith("_95")
         if column in frame and (rows := frame[(frame["icon"] == ALL) & frame[column].notna()]).size:
             ordered = rows.sort_values(column, kind="stable")
             ends = [ordered.iloc[place] for place in (0, -1)]
@@ -167,8 +170,8 @@ def sweep_report(frame: pd.DataFrame, key: str, quantities: Sequence[str]) -> li
     """Report one row per icon and value: each quantity with its 95 % interval for a new laboratory, where it has one.
 
     >>> import pandas as pd
-    >>> row = {"icon": "dip", "contact.area_cm2": 4.0, "correct": 0.82, "correct_low": 0.7, "correct_high": 0.91}
-    >>> [cell.text for cell in sweep_report(pd.DataFrame([row]), "contact.area_cm2", ["correct"])[0].rows[0]]
+    >>> row = {"icon": "dip", "contact.area_cm2": 4.0, "named": 0.82, "named_low": 0.7, "named_high": 0.91}
+    >>> [cell.text for cell in sweep_report(pd.DataFrame([row]), "contact.area_cm2", ["named"])[0].rows[0]]
     ['dip', '4', '82 % (70–91)']
     """
     from thermicon.perception.ranking.swept import ALL, OF_THE_SET

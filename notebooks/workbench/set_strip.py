@@ -60,10 +60,10 @@ class SetStrip(LiveView[SetRequest]):
         ranking, goal = self.ranking, self.design.document.goal
         whole = icon = felt = "–"
         if ranking is not None:
-            whole = whole if len(ranking.icons) < 2 else percent(ranking.proportion_correct)
+            whole = whole if len(ranking.icons) < 2 else percent(ranking.felt_and_named)
             for each in ranking.icons:
                 if each.name == self.design.scene.icon:
-                    icon = icon if len(ranking.icons) < 2 else percent(each.proportion_correct)
+                    icon = icon if len(ranking.icons) < 2 else percent(each.felt_and_named)
                     felt = percent(each.detected_probability)
         stale = self._source != self._request()
         people = 0 if ranking is None else ranking.people

@@ -21,8 +21,10 @@ OF_SITE = ("skin", "contact", "blood")
 ALL = "all icons"
 """Name of the row of the whole set, which no icon can have."""
 MEASURES: Mapping[str, tuple[str, ...]] = {
-    "correct": ("correct", "correct_low", "correct_high"),
-    "correct_95": ("correct_95",),
+    "felt_and_named": ("felt_and_named", "felt_and_named_low", "felt_and_named_high"),
+    "felt_and_named_95": ("felt_and_named_95",),
+    "named": ("named", "named_low", "named_high"),
+    "named_95": ("named_95",),
     "detected": ("detected", "detected_low", "detected_high"),
     "onset": ("onset_s", "onset_low_s", "onset_high_s"),
     "d_prime": ("d_prime", "d_prime_low", "d_prime_high"),
@@ -30,12 +32,13 @@ MEASURES: Mapping[str, tuple[str, ...]] = {
 }
 """What can be measured, and its columns: the value and its 95 % interval for a new laboratory.
 
-`correct_95` is what 95 % of people reach, people and model together, as in a goal: it has no interval besides.
+Those that end with `_95` are what 95 % of people reach, people and model together, as in a goal, without an interval.
 """
-OF_THE_SET = ("correct_95", "bits")
+OF_95 = ("felt_and_named_95", "named_95")
+OF_THE_SET = (*OF_95, "bits")
 """Measures that single icons do not have."""
 REACHED = 0.05
-"""The quantile of `correct_95`, over people of all draws."""
+"""The quantile of what 95 % of people reach, over people of all draws."""
 
 
 def sites() -> tuple[str, ...]:
@@ -94,8 +97,8 @@ def measured_rows(
 
     Confusions are with the whole set; `changes` are keys of the rig file, `site` and `people.age_years` with their
     values, `measures` names out of `MEASURES`. People, draws (`parameters`) and seed are as in `rank`, the same at
-    every value. Bits and `correct_95`, which needs draws, are of the set alone. d′ is that of the nearest other icon,
-    of the set that of the nearest pair.
+    every value. Bits and what 95 % of people reach, which needs draws, are of the set alone. d′ is that of the nearest
+    other icon, of the set that of the nearest pair.
     """
     from ..observer.observer_model import ObserverModel
     from .rank import rank
@@ -110,13 +113,15 @@ def measured_rows(
 
 
 def _of_set(found: Ranking) -> dict[str, Any]:
-    row: dict[str, Any] = {"correct": found.proportion_correct, **_nearest(found, None)}
+    shares = {"felt_and_named": found.felt_and_named, "named": found.proportion_correct}
+    row: dict[str, Any] = {**shares, **_nearest(found, None)}
     lab = found.new_laboratory
     if len(found.icons) > 1:
         row["bits"] = found.information_bits
     if lab is not None:
-        row["correct_low"], row["correct_high"] = lab.proportion_correct
-        row["correct_95"] = float(np.quantile(lab.persons["correct"], REACHED))
+        for name, (low, high) in (("felt_and_named", lab.felt_and_named), ("named", lab.proportion_correct)):
+            reached = float(np.quantile(lab.persons[name], REACHED))
+            row |= {f"{name}_low": low, f"{name}_high": high, f"{name}_95": reached}
         if len(found.icons) > 1:
             row["bits_low"], row["bits_high"] = lab.information_bits
     return row
@@ -125,12 +130,14 @@ def _of_set(found: Ranking) -> dict[str, Any]:
 def _of_icon(found: Ranking, place: int) -> dict[str, Any]:
     icon, lab = found.icons[place], found.new_laboratory
     row: dict[str, Any] = {
-        "correct": icon.proportion_correct,
+        "felt_and_named": icon.felt_and_named,
+        "named": icon.proportion_correct,
         "detected": icon.detected_probability,
         "onset_s": icon.onset_s,
         **_nearest(found, icon.name),
     }
     if lab is not None:
+        row["felt_and_named_low"], row["felt_and_named_high"] = lab.each_felt_and_named[place]
         row["detected_low"], row["detected_high"] = lab.detected[place]
         row["onset_low_s"], row["onset_high_s"] = lab.onset_s[place] or (None, None)
     return row

@@ -214,7 +214,7 @@ def word_of(quantity: str) -> str:
 
 def other_word(goal: str) -> str | None:
     """What `correct` in the text of a goal is read as, and what may be meant; None where it does not say so."""
-    if not re.search(rf"\b{CORRECT}\b", goal):
+    if not re.search(rf"\b{CORRECT}(?![a-z])", goal):
         return None
     return f"{CORRECT} is read as named, for which a play that is not felt is no miss; for that write felt-and-named"
 
