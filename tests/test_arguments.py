@@ -25,7 +25,7 @@ RIGHT: dict[str, Any] = {
     "drive": Drive([0, 1], [0, 0.1]), "plan": SessionPlan(("cooling-step",)), "logs": "none.csv", "path": "none.csv",
     "condition": Condition("threshold", "limits", "cold", 32.0, 12.0, 1.0, 0.0), "asked": Selection(2),
     "trials": Trials(("a", "b"), ("p",), np.ones((1, 2, 2))), "key": "contact.area_cm2", "values": [4.0],
-    "goal": "correct >= 50 %", "a": "cooling-step", "b": "warming-step", "n": 2, "time_s": [0, 1, 2],
+    "goal": "named >= 50 %", "a": "cooling-step", "b": "warming-step", "n": 2, "time_s": [0, 1, 2],
     "temperature_C": [32, 30, 32], "text": str(DIP), "ranking": lambda: ranked(), "found": lambda: ranked(),
     "trace": lambda: played(), "d_prime": np.ones((2, 2)), "confusion": np.eye(2), "shape": "sine", "every": 1.0,
     "duration": 1.0, "count": 2, "to": 0.1, "name": "six-icons", "source": "six-icons",

@@ -23,8 +23,8 @@ MOST_EDITS = 20
 NAMES = {f"laboratory, {channel}": f"sensitivity to {channel} in your laboratory" for channel in ("cold", "warm")}
 DETECTED = (
     "Detected is the share of these people's trials that end in a report; onset is the median time of those reports, "
-    "channel that of most of them, from 50 % on. Felt and named is, for each person, the share of plays that are reported "
-    "times that of right names, taken as independent given the person; named is for icons that are announced."
+    "channel that of most of them, from 50 % on. Felt and named is, for each person, the share of plays that are "
+    "reported times that of right names, taken as independent given the person; named is for announced icons."
 )
 
 

@@ -41,8 +41,8 @@ def sets_report(names: tuple[str, str], sets: tuple[Ranking, Ranking]) -> list[B
         better = names[0] if share >= 0.5 else names[1]
         points = 100.0 * abs(one.felt_and_named - other.felt_and_named)
         tail = (
-            f"{percent(max(share, 1.0 - share))} of people feel and name {better} better, by {number(points)} points in "
-            f"the mean, with the uncertainty of the model ({one.new_laboratory.draws} draws). {tail}"
+            f"{percent(max(share, 1.0 - share))} of people feel and name {better} better, by {number(points)} points "
+            f"in the mean, with the uncertainty of the model ({one.new_laboratory.draws} draws). {tail}"
         )
     crowd = count_of(one.people, "virtual person", "virtual people")
     lost = [

@@ -89,14 +89,14 @@ def plot_frontier(found: Frontier, ax: Axes | None = None) -> Axes:
     """Draw the mean over people, what 95 % of them reach, chance, and the total time at every point."""
     axes, first = new_axes(ax, (8.2, 4.2)), found.points[0]
     sizes = np.array([len(point.icons) for point in found.points])
-    correct = np.array([100.0 * point.at_own_range.proportion_correct for point in found.points])
+    alert = np.array([100.0 * point.at_own_range.felt_and_named for point in found.points])
     low = np.array([100.0 * point.reached for point in found.points])
     reach = "95 % of people reach, people and model" if found.draws else "95 % of people reach, nominal model"
-    axes.fill_between(sizes, low, correct, color="0.9", linewidth=0)
-    axes.plot(sizes, correct, color=DARK, marker="o", label="mean over people")
+    axes.fill_between(sizes, low, alert, color="0.9", linewidth=0)
+    axes.plot(sizes, alert, color=DARK, marker="o", label="mean over people")
     axes.plot(sizes, low, color=GREY, marker="v", linestyle="--", label=reach)
     axes.plot(sizes, 100.0 / sizes, color=GREY, linestyle=":", label="chance")
-    for size, value, point in zip(sizes.tolist(), correct.tolist(), found.points, strict=True):
+    for size, value, point in zip(sizes.tolist(), alert.tolist(), found.points, strict=True):
         axes.annotate(
             f"{point.total_s:.0f} s", (size, value), (0, 7), textcoords="offset points", ha="center", fontsize=8
         )
@@ -108,7 +108,7 @@ def plot_frontier(found: Frontier, ax: Axes | None = None) -> Axes:
     axes.grid(axis="y", alpha=0.25, linewidth=0.6)
     axes.set_axisbelow(True)
     axes.set_xlabel(f"number of icons, the best of {first.pool} by {first.objective}\n(above the points: total time)")
-    axes.set_ylabel("correct (%)")
+    axes.set_ylabel("felt and named (%)")
     axes.set_title("How many icons are distinguishable", loc="left")
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8)
     return axes

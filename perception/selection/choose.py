@@ -74,9 +74,17 @@ class Choice:
     @property
     def reached(self) -> float:
         """Felt and named that 95 % of people reach: with the uncertainty of the model, where there are draws."""
+        return self._reached("felt_and_named", self.at_own_range.reached)
+
+    @property
+    def reached_named(self) -> float:
+        """Named that 95 % of people reach, likewise."""
+        return self._reached("named", self.at_own_range.reached_named)
+
+    def _reached(self, quantity: str, nominal: float) -> float:
         if self.new_laboratory is None:
-            return self.at_own_range.reached
-        return float(np.quantile(self.new_laboratory.persons["felt_and_named"], 1.0 - REACHED_BY))
+            return nominal
+        return float(np.quantile(self.new_laboratory.persons[quantity], 1.0 - REACHED_BY))
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for `rank --json`."""

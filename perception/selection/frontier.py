@@ -77,8 +77,9 @@ class Frontier(Drawn, Tabled):
             {
                 "icons": len(point.icons),
                 "felt_and_named": point.at_own_range.felt_and_named,
-                "proportion_correct": point.at_own_range.proportion_correct,
                 "felt_and_named_95_percent_of_people": point.at_own_range.reached,
+                "proportion_correct": point.at_own_range.proportion_correct,
+                "proportion_correct_95_percent_of_people": point.at_own_range.reached_named,
                 "information_bits": point.at_own_range.information_bits,
                 "d_prime": point.at_own_range.d_prime,
                 "total_s": point.total_s,
@@ -86,6 +87,7 @@ class Frontier(Drawn, Tabled):
                 "proven_best": point.optimal,
                 "names": " ".join(point.icons),
                 "felt_and_named_95_percent_of_people_and_model": point.reached if self.draws else None,
+                "proportion_correct_95_percent_of_people_and_model": point.reached_named if self.draws else None,
                 "amber": " ".join(self.amber(point)),
                 "meets_goal": self.goals[k].met if self.goals else None,
             }

@@ -26,7 +26,7 @@ DT = 0.01
 def drawn(values: np.ndarray, correct: np.ndarray) -> LaboratoryDraws:
     names = tuple(f"constant {k}" for k in range(values.shape[1]))
     return LaboratoryDraws(
-        names, values, lambda: np.ones(len(names), bool), correct, *[np.zeros((len(correct), 1))] * 8
+        names, values, lambda: np.ones(len(names), bool), correct, *[np.zeros((len(correct), 1))] * 11
     )
 
 

@@ -42,7 +42,7 @@ def ranked(cli: Cli, tmp_path: Path) -> Callable[..., dict[str, Any]]:
     return run
 
 
-@pytest.mark.parametrize("objective", ["worst", "correct", "bits", "bits-per-s"])
+@pytest.mark.parametrize("objective", ["worst", "named", "bits", "bits-per-s"])
 def test_the_json_says_what_was_chosen_within_its_limits(ranked: Callable[..., dict[str, Any]], objective: str) -> None:
     goal = "time <= 24 s, energy <= 22 J"
     found = ranked("--choose", 3, "--objective", objective, "--must", "double-dip", "--goal", goal)
@@ -94,10 +94,10 @@ def test_search_writes_a_set_that_can_be_ranked(cli: Cli, families: Path, tmp_pa
 @pytest.mark.slow
 def test_search_says_what_a_goal_lacks(cli: Cli, families: Path) -> None:
     options = ("--evaluations", 20, "--people", 6, "--intervals", 8)
-    said = cli.good("improve", families, *options, "--goal", "correct >= 99.9 % for 95 % of people, time <= 60 s")
+    said = cli.good("improve", families, *options, "--goal", "named >= 99.9 % for 95 % of people, time <= 60 s")
     words = " ".join(said.stdout.split())
     for part in (
-        *("a new laboratory (95 %)", "✗ correct >= 99.9 % for 95 % of people: ", "✓ time <= 60 s: "),
+        *("a new laboratory (95 %)", "✗ named >= 99.9 % for 95 % of people: ", "✓ time <= 60 s: "),
         *("Not reached by this search",),
     ):
         assert part in words
@@ -128,12 +128,12 @@ def test_a_row_for_each_number_of_icons(cli: Cli, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        (("--intervals", 4, "--up-to", 3, "--goal", "correct >= 1 % for 95 % of people, time <= 17 s"),
-         ("time energy goal", "The 2 that meet the goal: ", "met by the best 2", "✓ correct >= 1 %",
+        (("--intervals", 4, "--up-to", 3, "--goal", "named >= 1 % for 95 % of people, time <= 17 s"),
+         ("time energy goal", "The 2 that meet the goal: ", "met by the best 2", "✓ named >= 1 %",
           "✓ time <= 17 s: ", "(4 draws)")),
         (("--intervals", 0, "--up-to", 2), ("about people alone", "milder than in a goal")),
-        (("--intervals", 4, "--up-to", 2, "--goal", "correct >= 99.9 %"),
-         ("met by none of these choices", "✗ correct >= 99.9 %: ", "missed by", "In the way: ")),
+        (("--intervals", 4, "--up-to", 2, "--goal", "named >= 99.9 %"),
+         ("met by none of these choices", "✗ named >= 99.9 %: ", "missed by", "In the way: ")),
     ],
 )  # fmt: skip
 def test_a_goal_is_judged_at_every_number(cli: Cli, options: tuple[object, ...], told: tuple[str, ...]) -> None:

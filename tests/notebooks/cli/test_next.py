@@ -10,7 +10,7 @@ from ..conftest import Cli
 
 HEAD = "cue 1\nset s {{\n  site {site}\n  control {control}\n  baseline 32 °C\n}}\n"
 FEW = ("--people", "8", "--intervals", "8")
-GOAL = ("--goal", "90 % correct for 90 % of people")
+GOAL = ("--goal", "90 % named for 90 % of people")
 
 
 def dip(name: str, by: float, at: float = 3, hold: float = 3) -> str:

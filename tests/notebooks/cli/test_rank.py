@@ -121,9 +121,7 @@ def test_an_icon_that_is_not_reached_is_in_the_way_and_says_its_lines_to_change(
         "icon warm { warm by 4 °C at 2 °C/s; hold for 3 s; return at 2 °C/s }\n",
         encoding="utf-8",
     )
-    said = " ".join(
-        cli.good("rank", path, "--people", 8, "--intervals", 0, "--goal", "correct >= 99.9 %").stdout.split()
-    )
+    said = " ".join(cli.good("rank", path, "--people", 8, "--intervals", 0, "--goal", "named >= 99.9 %").stdout.split())
     assert "In the way: fast and slow are confused most" in said
     assert "worst pair that can be played: slow and warm" in said
     assert "Next: change the lines of fast as said below, then thermicon rank" in said

@@ -92,13 +92,13 @@ def test_the_table_and_its_summary(cli: Cli, two: Path, tmp_path: Path) -> None:
 
 def test_a_swept_value_is_what_rank_predicts(two: Path) -> None:
     icons, rig = read_cue(two), Rig.load("thenar")
-    measured = Measured(icons, ("correct", "detected"), people=4, intervals=4)
+    measured = Measured(icons, ("named", "detected"), people=4, intervals=4)
     frame = sweep(icons, rig, "site", ["fingertip"], measured=measured)
     document = json.loads(Rig.load("fingertip").document)
     moved = rig.with_(**{table: document[table] for table in ("skin", "contact", "blood")})
     ranking = rank(icons, moved, people=4, parameters=4)
     row = frame[frame["icon"] == "all icons"].iloc[0]
-    assert row["correct"] == ranking.proportion_correct and ranking.new_laboratory is not None
+    assert row["named"] == ranking.proportion_correct and ranking.new_laboratory is not None
     assert (row["correct_low"], row["correct_high"]) == ranking.new_laboratory.proportion_correct
     first = frame.iloc[0]
     assert first["detected"] == ranking.icons[0].detected_probability
@@ -107,13 +107,13 @@ def test_a_swept_value_is_what_rank_predicts(two: Path) -> None:
 
 def test_what_95_percent_of_people_reach_is_the_number_of_a_goal(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "m.csv"
-    said = cli.good("sweep", two, "--vary", f"{AREA}=3,9", "--measure", "correct_95", *QUICK, "-o", out)
+    said = cli.good("sweep", two, "--vary", f"{AREA}=3,9", "--measure", "named_95", *QUICK, "-o", out)
     frame = pd.read_csv(out)
     ranking = rank(read_cue(two), Rig.load("thenar"), people=4, parameters=4)
-    goal = judge_goal("correct >= 1 % for 95 % of people", ranking)
-    whole = frame[frame["icon"] == "all icons"].set_index(AREA)["correct_95"]
+    goal = judge_goal("named >= 1 % for 95 % of people", ranking)
+    whole = frame[frame["icon"] == "all icons"].set_index(AREA)["named_95"]
     assert whole[9.0] == pytest.approx(goal.parts[0].value, rel=1e-8)
-    assert frame[frame["icon"] != "all icons"]["correct_95"].isna().all()
+    assert frame[frame["icon"] != "all icons"]["named_95"].isna().all()
     assert f"{100 * whole[9.0]:.0f} % correct for 95 % of people at {AREA} = 9" in said.stderr
 
 

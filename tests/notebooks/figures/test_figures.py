@@ -78,8 +78,8 @@ def test_a_sweep_marks_what_was_not_reached_and_bands_of_people() -> None:
     frame = pd.DataFrame({
         "icon": names, "driver.current_limit_A": values, "reached": [False, True, None, None],
         "cold_receptor_peak_change_K": [-1.0, -2.0, None, None],
-        "correct": [0.81, 0.93, 0.81, 0.93], "correct_low": [0.72, 0.85, 0.72, 0.85],
-        "correct_high": [0.9, 0.96, 0.9, 0.96],
+        "named": [0.81, 0.93, 0.81, 0.93], "named_low": [0.72, 0.85, 0.72, 0.85],
+        "named_high": [0.9, 0.96, 0.9, 0.96],
     })  # fmt: skip
     frame["reached"] = frame["reached"].astype("boolean")
     figure = overview(frame)

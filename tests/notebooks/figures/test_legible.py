@@ -30,7 +30,7 @@ COMMANDS = [
     "sweep wave-confusions --vary contact.area_cm2=2,4,8,16,32",
     "sweep six-icons --vary site=fingertip,forearm,hand-dorsum,thenar --measure correct,onset --people 2 --intervals 2",
     "sweep six-icons --vary people.age_years=20:80:4 --people 2 --intervals 2 --measure "
-    "correct,correct_95,detected,onset,d_prime,bits",
+    "correct,named_95,detected,onset,d_prime,bits",
 ]
 MANY = """cue 1
 set dips { site thenar; control display; baseline 32 °C }

@@ -30,8 +30,8 @@ def chosen(objective: Objective, seen: int, people: int) -> Choice:
 def test_a_choice_of_one_person_is_said_in_the_singular() -> None:
     for asked, words in (
         (("worst", 1, 1), "(1 threshold)"),
-        (("correct", 1, 1), "no other choice is better: it is the only one, evaluated with 1 person"),
-        (("correct", 3, 24), "all 3 choices were evaluated, with 24 people"),
+        (("named", 1, 1), "no other choice is better: it is the only one, evaluated with 1 person"),
+        (("named", 3, 24), "all 3 choices were evaluated, with 24 people"),
     ):
         assert words in "\n".join(choice_lines(chosen(*asked)))
 
@@ -47,7 +47,7 @@ def test_an_icon_that_is_not_reached_is_said_apart_from_safety() -> None:
 
 
 def test_what_a_share_of_people_means_is_said_once_and_in_a_short_line() -> None:
-    goal = Goal.parse("correct >= 80 % for 95 % of people, bits >= 2 for 90 % of people, time <= 9 s")
+    goal = Goal.parse("named >= 80 % for 95 % of people, bits >= 2 for 90 % of people, time <= 9 s")
     parts = tuple(GoalPartResult(part, part.limit, met=True, binding="") for part in goal.parts)
     lines = list(goal_lines(GoalResult(goal, parts)))
     assert lines[-1] == "  For a share of people: what at least so many reach, with the uncertainty of the model."

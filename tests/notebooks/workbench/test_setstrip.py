@@ -54,7 +54,7 @@ def test_it_is_rough_first_then_final_stale_as_soon_as_the_text_is_newer_and_res
 
 @pytest.mark.parametrize(
     ("goal", "met", "binding"),
-    [("time <= 1 s", False, "takes most time"), ("correct >= 50 % for 99 % of people", True, "")],
+    [("time <= 1 s", False, "takes most time"), ("named >= 50 % for 99 % of people", True, "")],
 )
 def test_a_goal_is_typed_once_judged_and_undone_as_a_step(does: Any, goal: str, met: bool, binding: str) -> None:
     said = does(type="goal", text=f" {goal}")[-1]

@@ -15,7 +15,7 @@ THENAR, FINGERTIP = Rig.load("thenar"), Rig.load("fingertip")
 
 def draws_of(values: np.ndarray, correct: np.ndarray, *names: str, idle: tuple[str, ...] = ()) -> LaboratoryDraws:
     acts = np.array([name not in idle for name in names])
-    return LaboratoryDraws(names, values, lambda: acts, correct, *[np.zeros((len(correct), 1))] * 8)
+    return LaboratoryDraws(names, values, lambda: acts, correct, *[np.zeros((len(correct), 1))] * 11)
 
 
 @pytest.mark.slow

@@ -18,17 +18,19 @@ TOP = (
     "pairs confusion set persons assumptions goal chosen map"
 )
 ICON = (
-    "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s proportion_correct reachable safe "
-    "reason cautions rules rules_score rules_margin outside_data detected_interval_new_laboratory "
-    "onset_interval_new_laboratory_s proportion_correct_interval_new_laboratory carry_over"
+    "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s felt_and_named proportion_correct "
+    "reachable safe reason cautions rules rules_score rules_margin outside_data detected_interval_new_laboratory "
+    "onset_interval_new_laboratory_s proportion_correct_interval_new_laboratory "
+    "felt_and_named_interval_new_laboratory carry_over"
 )
 PAIR = (
     "a b d_prime d_prime_interval_new_laboratory confused_probability confused_interval_new_laboratory why rules edit "
     "distinguishable_by_rules rules_margin no_edit parts"
 )
 SET = (
-    "proportion_correct proportion_correct_interval information_bits information_bits_interval bits_per_s "
-    "information_bits_plugin trials total_s total_J worst_pair rules_disagree norm_sensitivity norm_changes "
+    "felt_and_named felt_and_named_interval proportion_correct proportion_correct_interval information_bits "
+    "information_bits_interval bits_per_s information_bits_plugin trials total_s total_J worst_pair rules_disagree "
+    "norm_sensitivity norm_changes felt_and_named_interval_new_laboratory "
     "proportion_correct_interval_new_laboratory information_bits_interval_new_laboratory posterior_draws posterior "
     "new_laboratory_people own_laboratory doubt rules_score rules"
 )
@@ -67,7 +69,14 @@ def test_numbers_hang_together(held: Any) -> None:
     assert matrix.sum(axis=1) == pytest.approx(1.0, abs=1e-12)
     assert [icon["name"] for icon in held["icons"]] == held["confusion"]["labels"]
     assert [icon["proportion_correct"] for icon in held["icons"]] == pytest.approx(np.diag(matrix))
-    whole = held["set"]
+    whole, persons = held["set"], held["persons"]
+    assert whole["felt_and_named"] == pytest.approx(np.mean(persons["felt_and_named"]))
+    assert whole["felt_and_named"] == pytest.approx(np.mean([icon["felt_and_named"] for icon in held["icons"]]))
+    for icon in held["icons"]:
+        assert (
+            icon["felt_and_named"] <= icon["detected_probability"]
+            and icon["felt_and_named"] <= icon["proportion_correct"]
+        )
     assert whole["proportion_correct"] == pytest.approx(np.trace(matrix) / 6)
     low, high = whole["proportion_correct_interval"]
     assert low <= whole["proportion_correct"] <= high
@@ -106,7 +115,7 @@ def test_rows_are_ranked_and_pictures_drawn(ranking: Ranking) -> None:
     assert correct == sorted(correct, reverse=True)
     assert ranking.to_frame().shape == (6, len(rows[0]))
     axes = ranking.plot()
-    assert axes.get_title().startswith("Predicted answers, % (diagonal correct: ")
+    assert axes.get_title().startswith("Predicted answers where announced, % (diagonal named: ")
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("answered", "presented")
     assert ranking._repr_html_().startswith("<svg")
     apart = plot_distance(ranking)

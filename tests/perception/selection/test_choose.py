@@ -98,13 +98,13 @@ def test_time_and_energy_are_those_of_the_traces_and_are_kept(pool: Pool, rig: R
     assert pool.choose(2, most_s=least_s + 1e-6).total_s == pytest.approx(least_s)
 
 
-@pytest.mark.parametrize("objective", ["worst", "correct", "bits", "bits-per-s"])
+@pytest.mark.parametrize("objective", ["worst", "named", "bits", "bits-per-s"])
 def test_the_same_arguments_give_the_same_choice(pool: Pool, objective: str) -> None:
     one = pool.choose(3, objective, ("a",))
     assert one == pool.choose(3, objective, ("a",))
     assert "a" in one.icons
     assert list(one.to_dict()["at_own_range"]) == [
-        *("worst_pair", "d_prime", "proportion_correct", "information_bits", "bits_per_s"),
+        *("worst_pair", "d_prime", "felt_and_named", "proportion_correct", "information_bits", "bits_per_s"),
         *("proportion_correct_interval_new_laboratory", "information_bits_interval_new_laboratory"),
         *("d_prime_interval_new_laboratory", "icons"),
     ]

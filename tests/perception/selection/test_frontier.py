@@ -28,7 +28,7 @@ def test_every_size_has_its_best_choice(found: Frontier, six: IconSet, rig: Rig)
     for key in ("proportion_correct", "d_prime"):
         values = [getattr(point.at_own_range, key) for point in found.points]
         assert values == sorted(values, reverse=True)
-    assert all(point.reached <= point.at_own_range.proportion_correct <= 1.0 for point in found.points)
+    assert all(point.reached <= point.at_own_range.felt_and_named <= 1.0 for point in found.points)
     chosen = choose(rank(six, rig, people=12, seed=3, parameters=0), Selection(3, "worst"), parameters=0)
     assert found.points[1] == chosen
 
@@ -44,10 +44,10 @@ def test_direct_naming_of_all_icons_is_that_of_rank(rig: Rig) -> None:
 def test_as_a_table_and_a_picture(found: Frontier) -> None:
     frame = found.to_frame()
     assert list(frame["icons"]) == [2, 3, 4, 5]
-    assert frame["proportion_correct_95_percent_of_people_and_model"].isna().all()
+    assert frame["felt_and_named_95_percent_of_people_and_model"].isna().all()
     assert frame["names"][0].split() == list(found.points[0].icons)
     axes = found.plot()
-    assert axes.get_ylabel() == "correct (%)"
+    assert axes.get_ylabel() == "felt and named (%)"
     assert len(axes.lines) == 3
 
 
@@ -64,7 +64,7 @@ def test_total_time_ends_the_curve(six: IconSet, rig: Rig) -> None:
 
 
 def test_what_95_percent_reach_is_the_number_of_a_goal(six: IconSet, rig: Rig) -> None:
-    goal = "correct >= 85 % for 95 % of people, time <= 30 s"
+    goal = "felt-and-named >= 85 % for 95 % of people, time <= 30 s"
     seen = frontier(six, rig, people=8, parameters=8, objective="worst", goal=goal)
     assert [len(point.icons) for point in seen.points] == [2, 3]
     assert all(point.total_s <= 30.0 for point in seen.points)
@@ -74,7 +74,7 @@ def test_what_95_percent_reach_is_the_number_of_a_goal(six: IconSet, rig: Rig) -
     assert point.icons == chosen.icons
     value, row = judge_goal(goal, ranking, chosen).parts[0].value, seen.rows()[1]
     assert value == seen.goals[1].parts[0].value == point.reached
-    assert row["proportion_correct_95_percent_of_people_and_model"] == value
+    assert row["felt_and_named_95_percent_of_people_and_model"] == value
     assert row["meets_goal"] is seen.goals[1].met
 
 
@@ -90,7 +90,7 @@ def test_a_rough_table_of_few_people_comes_first_and_is_near(
     assert frontier(six, rig, **asked, rough=told.append).rows() == whole.rows()
     (rough,) = told
     assert (rough.rough, rough.job.people, rough.draws, whole.rough, whole.draws) == (True, 24, 64, False, 80)
-    for key in ("proportion_correct", "proportion_correct_95_percent_of_people_and_model"):
+    for key in ("felt_and_named", "felt_and_named_95_percent_of_people_and_model"):
         ours, theirs = ([row[key] for row in each.rows()] for each in (rough, whole))
         assert ours == pytest.approx(theirs, abs=0.03)
 
@@ -110,7 +110,7 @@ def test_a_goal_leaves_icons_out_and_says_why(rig: Rig) -> None:
     with pytest.raises(ChoiceError, match=r"^2 icons cannot be chosen: none is left \(faint is "):
         frontier(icons, rig, people=4, parameters=0, goal="onset <= 0.01 s")
     with pytest.raises(GoalError, match="needs draws"):
-        frontier(icons, rig, people=4, parameters=0, goal="correct >= 9 % for 95 % of people")
+        frontier(icons, rig, people=4, parameters=0, goal="named >= 9 % for 95 % of people")
 
 
 def test_amber_icons_are_named_or_left_out(rig: Rig) -> None:

@@ -62,7 +62,7 @@ def test_the_same_seed_gives_the_same_set(found: SearchResult, small: IconSet, r
     assert again == found
 
 
-@pytest.mark.parametrize("objective", ["correct", "bits-per-s"])
+@pytest.mark.parametrize("objective", ["named", "bits-per-s"])
 def test_one_icon_of_each_family(small: IconSet, rig: Rig, objective: str) -> None:
     made = search(small, rig, objective=objective, evaluations=80, people=6)  # type: ignore[arg-type]
     assert [icon.name.partition("-")[0] for icon in made.found] == ["plain", "dip", "rise"]
@@ -124,19 +124,17 @@ def test_of_the_sets_held_at_the_end_the_goal_chooses(
     merits: list[tuple[float, ...]] = []
     true_merit = searching._merit
     monkeypatch.setattr(searching, "_merit", lambda *given: merits.append(true_merit(*given)) or merits[-1])
-    goal = "correct >= 99 % for 95 % of people"
-    result = search(
-        small, rig, goal=goal, parameters=8, count=4, objective="correct", evaluations=150, people=12, seed=4
-    )
+    goal = "named >= 99 % for 95 % of people"
+    result = search(small, rig, goal=goal, parameters=8, count=4, objective="named", evaluations=150, people=12, seed=4)
     assert result.finalists == len(merits) > 1
-    assert result.chosen_by == "correct for 95 % of people"
+    assert result.chosen_by == "named for 95 % of people"
     best = max(merits)
     # Nearness to the goal first, then what 95 % of people reach: the same number as in a ranking.
     ranking = rank(result.found, rig, people=12, seed=4, parameters=8)
     assert judge_goal(goal, ranking).parts[0].value == pytest.approx(best[1], abs=0.02)
     assert best[0] == pytest.approx(-max(0.0, 1.0 - best[1] / 0.99))
     with pytest.raises(GoalError, match="needs draws of the posterior"):
-        search(small, rig, goal="correct >= 99 % for 95 % of people", parameters=0)
+        search(small, rig, goal="named >= 99 % for 95 % of people", parameters=0)
 
 
 @pytest.mark.slow
@@ -148,6 +146,6 @@ def test_a_search_does_not_end_below_the_plain_choice(count: int) -> None:
         "icon dip(k in 1..6 step 1 °C, r in 1..3 step 1 °C/s) { cool by k at r; hold for 1 s; return at 3 °C/s }\n"
         "icon rise(k in 1..5 step 1 °C, r in 1..3 step 1 °C/s) { warm by k at r; hold for 1 s; return at 3 °C/s }"
     )
-    plain = choose(rank(icons, people=60, parameters=0), Selection(count, "correct"), parameters=0).at_own_range
-    found = search(icons, count=count, objective="correct", evaluations=600, people=60, parameters=0)
+    plain = choose(rank(icons, people=60, parameters=0), Selection(count, "named"), parameters=0).at_own_range
+    found = search(icons, count=count, objective="named", evaluations=600, people=60, parameters=0)
     assert found.after.proportion_correct > plain.proportion_correct - 0.001
