@@ -38,7 +38,7 @@ FAULTS: dict[str, Story] = {
     "abort in now_us": (ABORTED, {"abort_at": 4600, "inside": 2}),
     "abort in put_out": (ABORTED, {"abort_at": 4600, "inside": 3}),
     "abort in mark": (ABORTED, {"abort_at": 4050, "inside": 4}),
-    "abort between a step and a play": (ABORTED, {"abort_at": 4054, "inside": 5}),
+    "abort between a step and a play": (ABORTED, {"abort_at": 4052, "inside": 5}),
     "hang": (SILENT, {"mute_at": 4600}),
     "late": (LATE, {"late_at": 4600, "late_us": 3e5}),
     "lost": (LOST, {"bad_at": 4600, "kind": OPEN}),
