@@ -77,10 +77,12 @@ static double course_C(void) {
 }
 
 enum { LOOP, MEASURE, CLOCK, PUT_OUT, MARK, AFTER }; /* in which function an abort comes */
+static long aborted_in = -1; /* the turn in whose step an abort comes */
 static void interrupt(int inside) {
     static int is_over;
     if (inside != (int)of[INSIDE] || turn < of[ABORT] || is_over) return;
     is_over = 1;
+    aborted_in = inside == LOOP ? turn - 1 : turn;
     thermicon_feed(&player);
     thermicon_abort(&player);
 }
@@ -103,6 +105,7 @@ static void put_out(void *own, float command) {
     if (own != &context) broken("the output is set with another context");
     if (!(fabs(command) <= RANGE)) broken("the driver takes no such command");
     if (player.state == THERMICON_TESTING && test_us < 0) test_us = true_us;
+    if (player.aborted && turn > aborted_in && (command < 0 || command > 0)) broken("a current after an abort");
     if (command < out || command > out) settle(0);
     interrupt(PUT_OUT);
     out = command;
