@@ -253,14 +253,14 @@ def sweep_command(
 
 def read_measures(text: str, intervals: int) -> tuple[str, ...]:
     """Read ``--measure``, beside the draws for intervals; what cannot be is a usage error."""
-    from thermicon.perception.selection.goal import other_word
+    from thermicon.perception.selection.goal import other_word, word_of
 
     if (offer := other_word(text)) is not None:
         note(offer)
     names = tuple(re.sub(r"^correct(?![a-z])", "named", name.strip().replace("-", "_")) for name in text.split(","))
     for name in names:
         if name not in MEASURES:
-            raise usage(f"{name!r} is not one of {', '.join(MEASURES)}", "--measure")
+            raise usage(f"{name!r} is not one of {', '.join(map(word_of, MEASURES))}", "--measure")
     if len(set(names)) < len(names):
         raise usage(f"{text!r}: the same quantity is given twice", "--measure")
     if intervals == 1:

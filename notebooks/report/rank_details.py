@@ -104,10 +104,8 @@ def number_points(made: SetReport) -> Iterator[str]:
         yield f"predicted with the observer of {ranking.observer}"
     if elsewhere is not None:
         people = count_of(elsewhere.people, "person", "people")
-        ends = (
-            f"{percent_span(*elsewhere.felt_and_named)} felt and named, {percent_span(*elsewhere.proportion_correct)}"
-        )
-        yield f"mean of {people} in {where} (95 %): {ends} named"
+        ends = f"{percent_span(*elsewhere.felt_and_named)}; named: {percent_span(*elsewhere.proportion_correct)}"
+        yield f"mean of {people} in {where} (95 %): {ends}"
     elif made.choice is None:
         yield "no interval for a new laboratory: --intervals 2 or more and an observer with draws (.csv) give one"
     if len(ranking.icons) == 1:

@@ -25,7 +25,7 @@ BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
 MOST_CONSTANTS = 12
 """Constants in the table of what carries the doubt; a file has them all."""
-RANKED = ("icon", "detected", "onset", "channel", "felt & named", "most confused with")
+RANKED = ("icon", "detected", "onset", "channel", "felt+named", "most confused with")
 NAMED = "named"
 A_POINT = 0.01
 """Where felt and named is less than named by more for any icon, both are shown."""

@@ -58,13 +58,17 @@ def test_two_sets_without_a_common_name_are_compared_as_a_whole(
     )
     monkeypatch.setattr("thermicon.perception.rank", partial(rank, people=40, parameters=8))
     lines = cli.good("compare", two, other).stdout.splitlines()
-    rows = {line[:22].strip(): line[22:].split() for line in lines[2:9]}
-    assert rows["named correctly"][:2] == rows["named correctly"][2:]
+    rows = {line[:22].strip(): line[22:].split() for line in lines[2:10]}
+    assert rows["felt and named"][:2] == rows["felt and named"][2:]
     monkeypatch.setattr("thermicon.notebooks.cli.compare.MOST_ICONS", 6)  # as many as there may be
-    assert "50 % of people name" in " ".join(lines) and "by 0 points in the mean" in " ".join(lines)
+    assert "50 % of people feel and name" in " ".join(lines) and "by 0 points in the mean" in " ".join(lines)
     said = " ".join(cli.good("compare", "six-icons", other).stdout.split())
-    assert (found := re.search(r"\d+ % of people name other better, by ([\d.]+) points in the mean, with the", said))
-    assert (shares := re.search(r"named correctly (\d+) % (\d+) %", said))
+    assert (
+        found := re.search(
+            r"\d+ % of people feel and name other better, by ([\d.]+) points in the mean, with the", said
+        )
+    )
+    assert (shares := re.search(r"felt and named (\d+) % (\d+) %", said))
     assert float(found[1]) == pytest.approx(float(shares[2]) - float(shares[1]), abs=1.0)
     other.write_text(other.read_text(encoding="utf-8").replace("thenar", "fingertip"), encoding="utf-8")
     said = cli.good("compare", two, other)

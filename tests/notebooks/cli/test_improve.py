@@ -120,7 +120,7 @@ def test_a_row_for_each_number_of_icons(cli: Cli, tmp_path: Path) -> None:
     frame = pd.read_csv(out)
     assert list(frame["icons"]) == [2, 3, 4]
     words = " ".join(said.stdout.split())
-    assert "icons correct 95 % of people d′ bits time energy" in words
+    assert "icons felt and named 95 % of people d′ bits time energy" in words
     assert "The 4: " + ", ".join(frame["names"][2].split()) in words
     assert picture.stat().st_size > 10_000 and picture.read_bytes() == (tmp_path / "same.png").read_bytes()
 

@@ -51,11 +51,12 @@ def test_the_json_has_the_promised_keys_and_the_details_its_numbers(cli: Cli, tw
     assert all(set(pair) >= PAIR for pair in ranked["pairs"])
     found = ranked["set"]
     assert set(found) >= SET
-    (low, high), (least, most) = (
-        found[f"{k}_interval_new_laboratory"] for k in ("proportion_correct", "information_bits")
+    (low, high), named, (least, most) = (
+        found[f"{k}_interval_new_laboratory"] for k in ("felt_and_named", "proportion_correct", "information_bits")
     )
     people = found["new_laboratory_people"]
-    assert f"  - mean of {people} people in a new laboratory (95 %): {percent_span(low, high)}\n" in said.stdout
+    both = f"{percent_span(low, high)}; named: {percent_span(*named)}"
+    assert f"- mean of {people} people in a new laboratory (95 %): {both}" in " ".join(said.stdout.split())
     assert f"  - in a new laboratory (95 %): {least:.2f}–{most:.2f} bits\n" in said.stdout
     assert "48-trial experiment" in said.stdout
     assert max(len(line) for line in said.stdout.splitlines() if not line.startswith("Next: ")) <= 80

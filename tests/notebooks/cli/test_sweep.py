@@ -73,16 +73,16 @@ def test_colours_tell_cooling_from_warming(two: Path) -> None:
 def test_the_table_and_its_summary(cli: Cli, two: Path, tmp_path: Path) -> None:
     out, picture = tmp_path / "m.csv", tmp_path / "m.png"
     asked = ("sweep", two, "--vary", f"{AREA}=1,9", *QUICK, "--measure")
-    said = cli(*asked, "correct,detected,onset,d_prime", "-o", out, "--figure", picture)
+    said = cli(*asked, "named,detected,onset,d_prime", "-o", out, "--figure", picture)
     assert said.exit_code == 0, said
     frame = pd.read_csv(out)
     assert list(frame["icon"].unique()) == ["cool-step", "warm-step", "all icons"]
-    assert {"correct_low", "detected_high", "onset_s", "d_prime_low", "skin_min_C", "reason"} <= set(frame.columns)
+    assert {"named_low", "detected_high", "onset_s", "d_prime_low", "skin_min_C", "reason"} <= set(frame.columns)
     whole = frame[frame["icon"] == "all icons"].set_index(AREA)
-    assert (whole["correct_low"] <= whole["correct_high"]).all()
+    assert (whole["named_low"] <= whole["named_high"]).all()
     assert "all icons: from" in said.stderr and "impossible" not in said.stderr
     assert picture.stat().st_size > 10_000
-    table, _, following = cli(*asked, "correct,onset").stdout.partition("\nNext: ")
+    table, _, following = cli(*asked, "felt-and-named,onset").stdout.partition("\nNext: ")
     assert "thermicon rank" in following
     rows = [line.split() for line in table.splitlines()[2:]]
     assert [row[:2] for row in rows][:2] == [["cool-step", "1"], ["cool-step", "9"]]
@@ -99,7 +99,7 @@ def test_a_swept_value_is_what_rank_predicts(two: Path) -> None:
     ranking = rank(icons, moved, people=4, parameters=4)
     row = frame[frame["icon"] == "all icons"].iloc[0]
     assert row["named"] == ranking.proportion_correct and ranking.new_laboratory is not None
-    assert (row["correct_low"], row["correct_high"]) == ranking.new_laboratory.proportion_correct
+    assert (row["named_low"], row["named_high"]) == ranking.new_laboratory.proportion_correct
     first = frame.iloc[0]
     assert first["detected"] == ranking.icons[0].detected_probability
     assert (first["detected_low"], first["detected_high"]) == ranking.new_laboratory.detected[0]
@@ -114,7 +114,7 @@ def test_what_95_percent_of_people_reach_is_the_number_of_a_goal(cli: Cli, two: 
     whole = frame[frame["icon"] == "all icons"].set_index(AREA)["named_95"]
     assert whole[9.0] == pytest.approx(goal.parts[0].value, rel=1e-8)
     assert frame[frame["icon"] != "all icons"]["named_95"].isna().all()
-    assert f"{100 * whole[9.0]:.0f} % correct for 95 % of people at {AREA} = 9" in said.stderr
+    assert f"{100 * whole[9.0]:.0f} % named for 95 % of people at {AREA} = 9" in said.stderr
 
 
 def test_older_people_feel_less(two: Path) -> None:

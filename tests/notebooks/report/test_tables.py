@@ -10,7 +10,7 @@ from thermicon.notebooks.report.blocks import Grid, grid
 from thermicon.notebooks.report.terminal import lines as rendered
 
 NAMES = ("icon", "most confused with")
-RANK = ("icon", "detected", "onset", "channel", "felt & named", "most confused with")
+RANK = ("icon", "detected", "onset", "channel", "felt+named", "most confused with")
 STYLE = re.compile(r"\x1b\[[0-9;]*m")
 
 

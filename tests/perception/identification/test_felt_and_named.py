@@ -1,6 +1,5 @@
 """Felt and named: reports times right names of each person, before any mean and never more than what is named."""
 
-import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
