@@ -158,15 +158,13 @@ def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = N
     chosen = () if made.choice is None else made.choice.icons
     icons = sorted(icons, key=lambda icon: icon.name not in chosen)
     both = differs(icons)
-    brief = both and most is not None  # the channel gives way, so that a row has 80 columns
-    heads = tuple(head for head in RANKED if head != "channel" or not brief)
-    heads = (*heads[:-1], NAMED, heads[-1]) if both else heads
+    heads = (*RANKED[:3], RANKED[4], NAMED, RANKED[5]) if both else RANKED  # without channel a row has 80 columns
     rows: list[tuple[str | Cell, ...]] = [
         (
             f"{'✓ ' * (icon.name in chosen)}{icon.name}{' *' * (place >= apart)}",
             percent(icon.detected_probability),
             seconds(icon.onset_s),
-            *([] if brief else [icon.channel or "–"]),
+            *([] if both else [icon.channel or "–"]),
             Cell(percent(icon.felt_and_named), "strong"),
             *([percent(icon.proportion_correct)] if both else []),
             rival(made.ranking, labels.index(icon.name)),
