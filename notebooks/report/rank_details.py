@@ -134,7 +134,7 @@ def memory_points(ranking: Ranking) -> Iterator[str]:
         else:
             more = f" ({count_of(len(changes) - 1, 'more change')} of order)" if len(changes) > 1 else ""
             order = f"{changes[0][1]} then ranks before {changes[0][0]}{more}"
-        told = f"{percent(share)} correct, {order}"
+        told = f"{percent(share)} named, {order}"
         yield f"with the other form of memory ({form}): {told}; no data settle which of the two is right"
 
 
@@ -176,7 +176,7 @@ def edit_words(edit: Edit) -> str:
 
 
 def assumption_blocks(found: Assumptions) -> list[Block]:
-    """The assumptions that move the proportion correct most, what the site rests on, and what was not varied."""
+    """The assumptions that move the proportion named most, what the site rests on, and what was not varied."""
     if not (found.moving or found.site):
         return []
     head = "What this depends on (no single assumption stands out from these people and draws)"
@@ -191,9 +191,9 @@ def _moving(each: Assumption) -> str:
     low, high = percent(each.correct_at_low), percent(each.correct_at_high)
     if each.source == "draws":
         name = NAMES.get(each.name, each.name)
-        return f"{name}: {low} correct at the low end of its 95 %, {high} at the high end"
+        return f"{name}: {low} named at the low end of its 95 %, {high} at the high end"
     return (
-        f"{each.name}: {low} correct at {each.low:.2g} {each.unit}, {high} at {each.high:.2g} {each.unit} "
+        f"{each.name}: {low} named at {each.low:.2g} {each.unit}, {high} at {each.high:.2g} {each.unit} "
         f"({each.value:.2g} {each.unit} assumed)"
     )
 
@@ -205,5 +205,5 @@ def _site(site: Mapping[str, Any]) -> str:
         "whose thresholds are used" if nearest == site["thresholds_of"] else f"the {site['thresholds_of']}'s are used"
     )
     twice = site["proportion_correct_at_twice_the_thresholds"]
-    more = "" if twice is None else f"; with twice those thresholds, {percent(twice)} correct"
+    more = "" if twice is None else f"; with twice those thresholds, {percent(twice)} named"
     return f"{site['site']}: {near}, {used}{more}"

@@ -199,7 +199,7 @@ def doubt_report(found: Sensitivity, title: str) -> list[Block]:
         )
         for effect in found.effects[:MOST_CONSTANTS]
     ]
-    lead = "What to measure first, with the share of the variance of correct names that it would remove:"
+    lead = "What to measure first, with the share of the variance of what is named that it would remove:"
     return [
         *([Heading(title, 1)] if title else []),
         grid(("constant", "95 % of draws", *numbers), rows, numbers),
@@ -207,7 +207,7 @@ def doubt_report(found: Sensitivity, title: str) -> list[Block]:
         Bullets(tuple(f"{percent(each.proportion_correct)}: {each.measurement}" for each in found.first)),
         Text(
             "Shares of the variance between draws of the posterior; constants that trade off share theirs, so that "
-            "shares need not add up to 100 %. Beside them the proportion correct expected at both ends of the "
+            "shares need not add up to 100 %. Beside them the proportion named that is expected at both ends of the "
             f"interval. {found.draws} draws for {crowd_text(found)} (seed {found.seed}, memory: "
             f"{found.memory}): contact and outermost layer of the skin vary too, unlike in the intervals of rank."
         ),
