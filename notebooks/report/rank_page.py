@@ -125,7 +125,9 @@ def view_parts(ranking: Ranking) -> Iterator[Block]:
     from thermicon.perception.plots.plot import plot_roc
 
     yield Heading("Pictures of the set")
-    confused = "Rows: the icon presented. Columns: the response. The diagonal is named correctly. Similar icons are adjacent."
+    confused = (
+        "Rows: the icon presented. Columns: the response. The diagonal is named correctly. Similar icons are adjacent."
+    )
     yield _drawn(plot_confusion(ranking), "answers to each icon, per cent", confused)
     yield _drawn(plot_distance(ranking), "d′ of every pair", "Median over people of the d′ between two icons.")
     found = map_of(ranking)

@@ -23,7 +23,17 @@ from ..timeline.frames import WORDS, terms_of
 
 ALONE = "The set has only one icon, so there are no distances to show."
 COLOURS = {"green": "th-good", "amber": "th-caution", "red": "th-bad"}
-ASKED = ("d′", "bits", "detected", "felt", "onset", "proportion correct", "middle 95 % of people", *WORDS["simulated"])
+ASKED = (
+    "d′",
+    "bits",
+    "detected",
+    "felt",
+    "onset",
+    "felt and named",
+    "named",
+    "middle 95 % of people",
+    *WORDS["simulated"],
+)
 """Words that are explained below a set."""
 
 

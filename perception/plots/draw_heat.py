@@ -32,7 +32,7 @@ def plot_confusion(ranking: Ranking, ax: Axes | None = None) -> Axes:
     order = clustered_order(ranking.d_prime)
     names = [ranking.marked[k] for k in order]
     axes = heat(names, names, 100.0 * ranking.confusion[np.ix_(order, order)], ax, top=100.0, bend=0.5)
-    title = f"Predicted answers where announced, % (diagonal named: {100 * ranking.proportion_correct:.0f} %)"
+    title = f"Predicted answers, % (diagonal named: {100 * ranking.proportion_correct:.0f} %)"
     axes.set(xlabel="answered", ylabel="presented", title=title)
     return axes
 

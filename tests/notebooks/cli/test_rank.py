@@ -221,7 +221,7 @@ def test_the_table_of_doubt_says_what_to_measure_first(cli: Cli, two: Path, tmp_
     assert {"constant", "unit", "low", "high", "proportion_correct", "information_bits"} <= set(effects[0])
     words = " ".join(said.stdout.split())
     assert words.startswith("Two for a test constant 95 % of draws correct bits correct low–high ")
-    assert "What to measure first, with the share of the variance of correct names that it would remove: - " in words
+    assert "What to measure first, with the share of the variance of what is named that it would remove: - " in words
     assert effects[0]["constant"].split()[0] in words
     assert (
         "64 draws for 3 virtual people on the thenar rig with contact.area_cm2=4 (seed 0, memory: episodes): " in words

@@ -60,7 +60,7 @@ def test_a_column_has_letters_and_one_key_below() -> None:
 def test_the_title_is_left_to_the_caption_and_panels_say_what_they_show_and_no_more() -> None:
     figure = two_panels()
     for ax, title in zip(
-        figure.axes, ("Predicted d′ (memory: episodes)", "Answers, % (diagonal correct: 85 %)"), strict=True
+        figure.axes, ("Predicted d′ (memory: episodes)", "Answers, % (diagonal named: 85 %)"), strict=True
     ):
         ax.set_title(title)
     restyle(figure, 85.0)

@@ -115,7 +115,7 @@ def test_rows_are_ranked_and_pictures_drawn(ranking: Ranking) -> None:
     assert correct == sorted(correct, reverse=True)
     assert ranking.to_frame().shape == (6, len(rows[0]))
     axes = ranking.plot()
-    assert axes.get_title().startswith("Predicted answers where announced, % (diagonal named: ")
+    assert axes.get_title().startswith("Predicted answers, % (diagonal named: ")
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("answered", "presented")
     assert ranking._repr_html_().startswith("<svg")
     apart = plot_distance(ranking)
