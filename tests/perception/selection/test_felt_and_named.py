@@ -1,12 +1,14 @@
 """Felt and named: reports times right names of each person, before any mean and never more than what is named."""
 
+import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, parse
-from thermicon.perception import Ranking, rank
+from thermicon.perception import Ranking, Selection, choose, frontier, judge_goal, rank
 from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.ranking import batches
+from thermicon.perception.selection.request import Objective
 
 ALERTS = """cue 1
 icon faint { cool by 0.4 °C at 1 °C/s; hold for 1 s; return at 1 °C/s }
@@ -48,3 +50,33 @@ def test_no_shift_takes_it_above_named(monkeypatch: pytest.MonkeyPatch) -> None:
     assert found is not None
     assert (found.each.persons_felt_and_named <= found.each.persons_correct + 1e-12).all()
     assert (found.each.felt_and_named <= found.each.proportion_correct + 1e-12).all()
+
+
+@pytest.mark.parametrize("number", [0, 1, *(pytest.param(k, marks=pytest.mark.slow) for k in range(2, 10))])
+def test_no_objective_and_no_goal_keeps_a_silent_icon(number: int) -> None:
+    """It is never confused, since nobody feels it: by names alone it would be the best of all."""
+    rng = np.random.default_rng([57, number])
+    ways = rng.permutation(["cool", "warm", "cool", "warm"])
+    shapes = [
+        f"icon i{k} {{ {way} by {rng.uniform(2.0, 4):.1f} °C at {rng.uniform(1, 2.5):.1f} °C/s; "
+        f"hold for {rng.uniform(0.5, 4):.1f} s; return at 1.5 °C/s }}"
+        for k, way in enumerate(ways)
+    ]
+    way = str(rng.choice(["cool", "warm"]))
+    icons = parse(
+        "\n".join(["cue 1", *shapes, f"icon silent {{ {way} by 0.1 °C at 1 °C/s; hold for 1 s; return at 1 °C/s }}"])
+    )
+    ranking = rank(icons, Rig.load("thenar"), people=8, parameters=0)
+    assert ranking.icons[-1].felt_and_named < 0.1 < 0.7 < ranking.icons[-1].proportion_correct
+    result = judge_goal("felt-and-named >= 85 %", ranking)
+    assert not result.met and result.binding[0].startswith("silent is felt in")
+    assert judge_goal("named >= 60 %", ranking).met
+    objectives: tuple[Objective, ...] = ("worst", "felt-and-named", "named", "bits", "bits-per-s")
+    for objective in objectives:
+        choice = choose(ranking, Selection(3, objective), parameters=0)
+        assert "silent" not in choice.icons, objective
+        assert (choice.excluded[0][0], choice.excluded[0][1][:14]) == ("silent", "is detected in")
+    found = frontier(
+        icons, Rig.load("thenar"), people=8, most=4, parameters=0, goal="named >= 60 %, detected >= 0.0001"
+    )
+    assert len(found.points[-1].icons) == 4, "a goal may ask less of detected, and then it may be chosen"
