@@ -114,7 +114,7 @@ def cards(made: SetReport) -> tuple[tuple[str, str], ...]:
     mean = sum(icon.detected_probability for icon in icons) / len(icons)
     if worst is None:
         return ((percent(mean), "of trials detected"),)
-    alert, correct, bits = "felt and named", "named correctly where announced", "of information, which counts names"
+    alert, correct, bits = "felt and named", "named correctly where announced", "of information by names"
     if choice is not None:
         own = choice.at_own_range
         both, information, d_prime = (own.felt_and_named, own.proportion_correct), own.information_bits, own.d_prime
