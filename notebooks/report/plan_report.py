@@ -24,7 +24,7 @@ def prediction_lines(found: ExperimentPlan, names: Sequence[str]) -> list[str]:
     lines = []
     for name, each in zip(names, found.predictions, strict=True):
         share, low, high = each.proportion_correct
-        lines.append(f"{name}: {percent(share)} correct, 95 % of laboratories {percent_span(low, high)}")
+        lines.append(f"{name}: {percent(share)} named, 95 % of laboratories {percent_span(low, high)}")
     if found.difference is not None:
         points = [number(100 * value) for value in found.difference]
         lines.append(f"Difference of the two: {points[0]} points, 95 % of laboratories {points[1]} to {points[2]}")
@@ -52,7 +52,7 @@ def design_lines(found: ExperimentPlan) -> list[str]:
     best = found.cheapest
     if found.difference is None:
         wanted = f"an interval of {number(100 * found.wanted)} points or less"
-        lines = [f"Mean width of the 95 % interval of the per cent correct, in points; * marks {wanted}."]
+        lines = [f"Mean width of the 95 % interval of the per cent named, in points; * marks {wanted}."]
         cure, each_set = " participants or trials; try larger --participants.", ""
     else:
         wanted = f"{percent(found.wanted)} of experiments distinguish the sets"
