@@ -24,15 +24,18 @@ LEAST_TRIALS = 20
 LEAST_LABORATORIES = 100
 """Laboratories below which widths of intervals scatter by over 15 %, and other constants are hardly tried."""
 MOST_CONSTANTS = 8
+FELT = "felt & named"
+SHOWN = {"felt_and_named": FELT, "proportion_correct": "named", "information_bits": "bits"}
 LEAST_VALUES = 6
 """Values below which a test of fit judges nobody."""
 LEAST_CARRIED = 30
 """Laboratories of measurements below which an interval is rough."""
+FORCED = "Each trial has an answer, as where nobody can say that nothing was felt: this judges"
 
 
 def opened_report(found: SealedScores) -> list[Block]:
     """Report the scores of a sealed prediction, and in one sentence what they are worth."""
-    columns = ("", "log score, bits a trial", "correct, it says")
+    columns = ("", "log score, bits a trial", "named, it says")
     rows = [(by, signed(bits, ".2f"), percent(correct)) for by, (bits, correct) in found.scores.items()]
     own, *others = (bits for bits, _ in found.scores.values())
     off, chance = own - others[-1], 2.0 * found.chance_bits
@@ -47,11 +50,29 @@ def opened_report(found: SealedScores) -> list[Block]:
         Text(f"{found.sealed.source}, thermicon {found.sealed.version}, SHA-256:\n{found.sealed.sha256}"),
         grid(columns, rows, columns[1:]),
         Text(
-            f"{found.trials} answers, {percent(found.observed_correct)} correct. "
+            f"{found.trials} answers, {percent(found.observed_correct)} named correctly. "
             f"The prediction was {' and '.join(than)}; it {kept}: {signed(off, '+.2f')} bits from the best that its "
             f"matrix allows, where chance leaves ±{chance:.2f} in independent trials."
         ),
+        Text(opened_reports(found)),
     ]
+
+
+def opened_reports(found: SealedScores) -> str:
+    """What a sealed prediction says of felt and named, or why it says nothing."""
+    if not found.unanswered:
+        return f"{FORCED} on named alone."
+    if found.felt_and_named is None:
+        return (
+            f"{found.unanswered} plays were not felt. The sealed file is of before felt and named was predicted: it is "
+            "read on named alone, of which they are no part."
+        )
+    seen, said, chance = found.felt_and_named
+    return (
+        f"Felt and named: {percent(seen)} of {found.trials + found.unanswered} plays; it says {percent(said)}, "
+        f"{'within' if abs(seen - said) <= 2.0 * chance else 'beyond'} what chance leaves "
+        f"(±{200.0 * chance:.0f} points in independent trials)."
+    )
 
 
 def observed_report(found: Observed[Any, Any], files: Sequence[str], last: str = "") -> list[Block]:
@@ -71,18 +92,20 @@ def observed_report(found: Observed[Any, Any], files: Sequence[str], last: str =
 
 
 def sets_table(found: Observed[Any, Any], files: Sequence[str]) -> Grid:
-    """Each set before and after: per cent correct and bits of people who did not take part."""
+    """What is felt and named, named, and in bits, of each set by people who did not take part: before and after."""
     enough = len(found.conditioned.after) >= LEAST_LABORATORIES
-    columns = ["set", "", "correct", "95 %", "bits", "95 %"] + ["narrower"] * enough
+    columns = ["set", "", "before (95 %)", "after (95 %)"] + ["narrower"] * enough
     rows = []
     for file, each in zip(files, found.predictions, strict=True):
-        for when, one in (("before", each.before), ("after", each.after)):
-            (share, low, high), (bits, least, most) = one.proportion_correct, one.information_bits
-            cells = [Path(file).name if when == "before" else "", when, percent(share), percent_span(low, high)]
-            cells += [f"{bits:.2f}", f"{least:.2f}–{most:.2f}"]
-            change = f"{each.narrower:.2f} ×" if each.narrower >= 1.0 else f"wider, {1.0 / each.narrower:.2f} ×"
-            rows.append(cells + [change if when == "after" else ""] * enough)
-    return grid(columns, rows, ("correct", "bits", "narrower"))
+        for name, shown in SHOWN.items():
+            ends = [getattr(one, name) for one in (each.before, each.after)]
+            cells = [
+                f"{a:.2f} ({b:.2f}–{c:.2f})" if shown == "bits" else f"{percent(a)} ({percent_span(b, c)})"
+                for a, b, c in ends
+            ]
+            change = [f"{each.narrowed(name):.2f} ×"] * enough
+            rows.append([Path(file).name if shown == FELT else "", shown, *cells, *change])
+    return grid(columns, rows, ("before (95 %)", "after (95 %)", "narrower"))
 
 
 def draws_sentences(found: Observed[Any, Any]) -> list[str]:
@@ -97,7 +120,7 @@ def draws_sentences(found: Observed[Any, Any]) -> list[str]:
         carried += f", too few to be weighted: {len(own.after)} fresh laboratories were sampled in {rounds}{how}"
     lines = [
         f"Before and after are for {people} people of this laboratory who did not take part, with 95 % of "
-        "laboratories.",
+        "laboratories. Bits count names.",
         f"The {'answers' if answered else 'values'} weigh the draws: {carried}.",
     ]
     if not answered and own.effective_after < LEAST_CARRIED:
@@ -172,24 +195,27 @@ def _three(ends: tuple[float, float, float]) -> str:
 
 def answered_blocks(found: Observed[Namings, Fit]) -> list[Block]:
     """One row per participant and one for all, what the answers do not say, and how they fit the prediction."""
-    said = "\n".join(observed_sentences(found.data))
-    return [people_table(found.data), Text(said), Text("\n".join(fit_sentences(found))), *pairs(found.fit)]
+    said, fits = "\n".join(observed_sentences(found.data)), Text("\n".join(fit_sentences(found)))
+    return [people_table(found.data), Text(said), *reports(found), fits, *pairs(found.fit)]
 
 
 def people_table(data: Namings) -> Grid:
-    """One row per participant and one for all: trials, per cent correct, bits."""
-    rows = [_row(score) for score in data.each[:MOST_PEOPLE]]
+    """One row per participant and one for all: trials, felt and named where both are known, named, bits."""
+    both = not data.trials.forced
+    rows = [_row(score, both) for score in data.each[:MOST_PEOPLE]]
+    columns = ["", "trials", *["not felt", FELT, "95 %"] * both, "named", "95 %", "bits"]
     if (more := len(data.each) - MOST_PEOPLE) > 0:
-        rows.append([f"and {more} more", "", "", "", "", ""])
-    columns, rows = ["", "trials", "correct", "95 %", "bits", "no answer"], [*rows, _row(data.pooled)]
-    rows = rows[-1:] if data.trials.grouped else rows
-    kept = len(columns) if data.pooled.unanswered else -1
-    return grid(columns[:kept], [row[:kept] for row in rows], ("trials", "correct", "bits", "no answer"))
+        rows.append([f"and {more} more", *[""] * (len(columns) - 1)])
+    rows = [*rows, _row(data.pooled, both)]
+    return grid(columns, rows[-1:] if data.trials.grouped else rows, ("trials", "not felt", FELT, "named", "bits"))
 
 
-def _row(score: AnswerScore) -> list[str]:
-    correct = [percent(score.proportion_correct), percent_span(*score.proportion_correct_interval)]
-    return [score.who, str(score.trials), *correct, f"{score.information_bits:.2f}", str(score.unanswered)]
+def _row(score: AnswerScore, both: bool) -> list[str]:
+    alert = [str(score.unanswered), percent(score.proportion_correct), percent_span(*score.proportion_correct_interval)]
+    named = ["–", "–"]
+    if score.named is not None and score.named_interval is not None:
+        named = [percent(score.named), percent_span(*score.named_interval)]
+    return [score.who, str(score.trials), *alert * both, *named, f"{score.information_bits:.2f}"]
 
 
 def observed_sentences(data: Namings) -> list[str]:
@@ -202,9 +228,13 @@ def observed_sentences(data: Namings) -> list[str]:
     ]
     if pooled.unanswered:
         lines.append(
-            f"{pooled.unanswered} of {pooled.trials} trials have no answer: not correct in the table, and left out of "
-            "bits, test of fit and likelihood."
+            f"{pooled.unanswered} of {pooled.trials} trials have no answer, so were not felt: a miss for felt and "
+            "named, and no part of named, of bits, of their test of fit and of the likelihood."
         )
+    else:
+        lines.append(f"{FORCED} named alone.")
+    if trials.missing:
+        lines.append(f"Marked as missing, and no trials: {trials.missing}.")
     if trials.passed:
         lines.append(f"Passed over, with neither icon nor answer of the set: {trials.passed} rows or trials of a row.")
     if trials.grouped:
@@ -215,7 +245,7 @@ def observed_sentences(data: Namings) -> list[str]:
     if trials.never_presented:
         lines.append(
             f"Never presented: {', '.join(trials.never_presented)}. Their results are predictions alone, and "
-            "per cent correct is that of the others."
+            "the shares are those of the others."
         )
     return lines
 
@@ -227,7 +257,7 @@ def fit_sentences(found: Observed[Namings, Fit]) -> list[str]:
     middle, low, high = fit.proportion_correct
     bits, least, most = fit.information_bits_plugin
     lines = [
-        f"Predicted for this experiment: {percent(middle)} correct ({percent_span(low, high)}), {bits:.2f} plug-in "
+        f"Predicted for this experiment: {percent(middle)} named ({percent_span(low, high)}), {bits:.2f} plug-in "
         f"bits ({least:.2f}–{most:.2f}). Observed{' where they answered' * bool(pooled.unanswered)}: "
         f"{percent(float(seen.trace() / seen.sum()))}, {pooled.information_bits_plugin:.2f} bits. This prediction is "
         "the median of experiments with as many participants and trials; that of the set, below, is the mean over "
@@ -238,6 +268,30 @@ def fit_sentences(found: Observed[Namings, Fit]) -> list[str]:
     if fit.p_people is not None:
         lines.append(f"Participants differ as much or more in {percent(fit.p_people)} of simulated experiments.")
     return lines
+
+
+def reports(found: Observed[Namings, Fit]) -> list[Block]:
+    """Felt and named beside its prediction, the test of fit of what was felt, and the icons that it missed."""
+    fit, pooled = found.fit, found.data.pooled
+    if fit.felt_and_named is None or fit.p_reports is None or found.fit_after.p_reports is None:
+        return []
+    middle, low, high = fit.felt_and_named
+    verdict = "the prediction of what is felt missed" if fit.p_reports < POOR else "they are what the prediction allows"
+    if pooled.trials < LEAST_TRIALS:
+        verdict = f"{pooled.trials} trials are too few to judge the model by; {LEAST_TRIALS} or more can"
+    text = (
+        f"Predicted for this experiment: {percent(middle)} felt and named ({percent_span(low, high)}). Observed: "
+        f"{percent(pooled.proportion_correct)}.\nTest of fit of the plays that were felt: p = {p_text(fit.p_reports)} "
+        f"before, {p_text(found.fit_after.p_reports)} after the answers were used: {verdict}"
+    )
+    points = [
+        f"{each.icon}: {round(each.observed * each.trials)} of {each.trials} not felt; predicted "
+        f"{percent(each.predicted)} ({percent_span(*each.predicted_interval)})"
+        for each in fit.reports
+        if each.missed
+    ]
+    head = f"Icons not felt outside their predicted 95 % ({len(points)} of {len(fit.reports)}):"
+    return [Text(text), *((Text(head), Bullets(tuple(points))) if points else ())]
 
 
 def pairs(fit: Fit) -> list[Block]:

@@ -196,6 +196,8 @@ class Namings:
             "counts": trials.pooled.astype(int).tolist(),
             "unanswered": trials.unanswered.sum(axis=0).astype(int).tolist(),
             "rows_passed_over": trials.passed,
+            "rows_missing": trials.missing,
+            "forced": trials.forced,
             "one_group": trials.grouped,
             "observed": asdict(self.pooled),
             "each": [asdict(each) for each in self.each],

@@ -94,7 +94,7 @@ NEAREST, AGAIN = 6, 8
 def middle_of(some: Laboratories, constants: Array, predicted: Array, played: Stage) -> int:
     """Number of the laboratory whose constants are near their medians, and what it predicts near the means.
 
-    The first column of `predicted` is the proportion correct; for it the nearest are asked the set once more.
+    The first column of `predicted` is the share felt and named; for it the nearest are asked the set once more.
     """
     _, first, group, times = np.unique(some.place, axis=0, return_index=True, return_inverse=True, return_counts=True)
     # Resampled more than once, a laboratory has been asked with several groups of people.
@@ -109,7 +109,7 @@ def middle_of(some: Laboratories, constants: Array, predicted: Array, played: St
     asked = np.repeat(chosen, AGAIN)
     # Each has people of its own: one group for all would shift the score of whichever is chosen.
     again = Laboratories(some.place[asked], rng.integers(SEEDS, size=len(asked)))
-    scores = played.confusions(again).correct.reshape(len(chosen), AGAIN).sum(axis=1)
+    scores = played.confusions(again).felt_and_named.reshape(len(chosen), AGAIN).sum(axis=1)
     scores = (scores + means[near, 0] * times[near]) / (AGAIN + times[near])
     return int(chosen[np.abs(scores - predicted[:, 0].mean()).argmin()])
 

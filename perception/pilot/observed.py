@@ -86,7 +86,7 @@ class Observed(Drawn, Tabled, Generic[D, F]):
     def draws(self) -> PosteriorDraws:
         """Draws of constants and memory in this laboratory, equally weighted; its offset is part of the thresholds."""
         after, details = self.confusions_after, self.data.details(self.conditioned.simulated_after)
-        predicted = np.column_stack([after.correct, after.bits, details])
+        predicted = np.column_stack([after.felt_and_named, after.correct, after.bits, details])
         return laboratory_draws(self.prior, self.conditioned, predicted, self.played, self.provenance, self._where)
 
     def files(self) -> tuple[str, str]:

@@ -33,10 +33,24 @@ MOST_ICONS = 64
 
 @dataclass(frozen=True, slots=True)
 class Confusions:
-    """Confusions `probability` (laboratories, people, icons, icons) in single precision, and the names of the icons."""
+    """Confusions `probability` (laboratories, people, icons, icons) of announced icons, in single precision.
+
+    `reported` (laboratories, people, icons) is the probability of a report by the same people, where nothing announces.
+    """
 
     icons: tuple[str, ...]
     probability: Small
+    reported: Small
+
+    @property
+    def alert(self) -> Array:
+        """Probability (laboratories, people, icons) that an icon is felt and named: of each person, before any mean."""
+        return np.asarray(self.reported * np.diagonal(self.probability, axis1=2, axis2=3), dtype=np.float64)
+
+    @property
+    def felt_and_named(self) -> Array:
+        """Share felt and named of every laboratory, as the mean over its people."""
+        return np.asarray(self.alert.mean(axis=(1, 2)))
 
     @property
     def correct(self) -> Array:
@@ -56,11 +70,12 @@ class Confusions:
 
     def of(self, which: NDArray[np.int64]) -> Confusions:
         """Those of some laboratories."""
-        return replace(self, probability=self.probability[which])
+        return replace(self, probability=self.probability[which], reported=self.reported[which])
 
     def joined(self, other: Confusions) -> Confusions:
         """These and those of further laboratories."""
-        return replace(self, probability=np.concatenate([self.probability, other.probability]))
+        both = ((self.probability, other.probability), (self.reported, other.reported))
+        return Confusions(self.icons, *map(np.concatenate, both))
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,24 +88,26 @@ class Stage:
     skins: tuple[Array, Array]
 
     def confusions(self, some: Laboratories, step: Callable[[], None] | None = None) -> Confusions:
-        """Confusions of the icons by the people of each laboratory; `step` is called after each."""
+        """What the people of each laboratory feel, and call the icons; `step` is called after each."""
         values, prior = self.prior.values(some), self.prior
 
-        def one(k: int) -> Small:
+        def one(k: int) -> tuple[Small, Small]:
             observer, offsets = prior.observer_of(values[k])
             people = draw_people(self.played.people, int(some.seed[k]), observer=observer, offsets=offsets)
             people = replace(people, contact_resistance=self.skins[0], outer_layer=self.skins[1])
-            felt = respond(self.played, people, observer, detection=False)
+            felt = respond(self.played, people, observer)
             named = identify(felt, prior.form, people, observer, int(some.seed[k]), SAMPLES)[1].probability
-            return np.maximum(named, LEAST_PROBABILITY).astype(np.float32)
+            reported = felt.detected.probability.clip(LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY)
+            return np.maximum(named, LEAST_PROBABILITY).astype(np.float32), reported.astype(np.float32)
 
-        found = np.empty((len(some), self.played.people, len(self.icons), len(self.icons)), dtype=np.float32)
+        reported = np.empty((len(some), self.played.people, len(self.icons)), dtype=np.float32)
+        found = np.empty((*reported.shape, len(self.icons)), dtype=np.float32)
         for k, each in enumerate(in_order(one, range(len(some)))):
-            found[k] = each
+            found[k], reported[k] = each
             if step is not None:
                 step()
         found /= found.sum(axis=-1, keepdims=True)
-        return Confusions(self.icons, found)
+        return Confusions(self.icons, found, reported)
 
 
 def stage(icons: IconSet, rig: Rig, prior: LaboratoryPrior, *, seed: int = 0, tracking: str | None = None) -> Stage:

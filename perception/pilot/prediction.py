@@ -33,24 +33,30 @@ CHANCE = 6.0
 """Bits times draws that the largest of some fifty constants seems to gain by chance alone."""
 
 
+SCORES = ("felt_and_named", "proportion_correct", "information_bits")
+"""What is predicted of a set; the proportion correct and bits are those of announced icons."""
+
+
 @dataclass(frozen=True, slots=True)
 class SetPrediction:
     """Scores of a set as means over people who did not take part, each with 95 % of the laboratories."""
 
     title: str
     people: int
+    felt_and_named: Three
     proportion_correct: Three
     information_bits: Three
 
     @classmethod
     def of(cls, title: str, played: Confusions) -> SetPrediction:
         """Summarise the laboratories of a sample."""
-        return cls(title, int(played.probability.shape[1]), three(played.correct), three(played.bits))
+        scores = played.felt_and_named, played.correct, played.bits
+        return cls(title, int(played.probability.shape[1]), *map(three, scores))
 
     def row(self, data: str) -> dict[str, Any]:
         """A row of a table, for `data` of before or after."""
         row: dict[str, Any] = {"set": self.title, "data": data}
-        for name in ("proportion_correct", "information_bits"):
+        for name in SCORES:
             row |= zip((name, f"{name}_low", f"{name}_high"), getattr(self, name), strict=True)
         return row
 
@@ -65,8 +71,11 @@ class ChangedPrediction:
     @property
     def narrower(self) -> float:
         """By which factor the interval of the proportion correct got narrower (below 1: wider)."""
-        ends = self.before.proportion_correct, self.after.proportion_correct
-        before, after = (high - low for _, low, high in ends)
+        return self.narrowed("proportion_correct")
+
+    def narrowed(self, score: str) -> float:
+        """By which factor the interval of a score got narrower."""
+        before, after = (high - low for _, low, high in (getattr(one, score) for one in (self.before, self.after)))
         return before / after if after > 0.0 else math.inf
 
 
@@ -132,10 +141,23 @@ class PairFit:
 
 
 @dataclass(frozen=True, slots=True)
+class ReportFit:
+    """Plays of an icon that were not felt, as a share of its `trials`; `missed`: outside the interval."""
+
+    icon: str
+    trials: int
+    observed: float
+    predicted: float
+    predicted_interval: tuple[float, float]
+    missed: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Fit:
     """The prediction for the same experiment: `p` of the test of fit, scores as reported, and every pair.
 
     `p_people` is the share whose participants differ as much as the observed ones (None for fewer than three).
+    `p_reports`, `felt_and_named` and `reports` are None and empty where every trial has an answer.
     """
 
     p: float
@@ -143,6 +165,9 @@ class Fit:
     proportion_correct: Three
     information_bits_plugin: Three
     pairs: tuple[PairFit, ...]
+    p_reports: float | None = None
+    felt_and_named: Three | None = None
+    reports: tuple[ReportFit, ...] = ()
 
     @property
     def missed(self) -> tuple[PairFit, ...]:
@@ -199,7 +224,36 @@ def compare(trials: Trials, played: Confusions, *, seed: int = 0) -> Fit:
         proportion_correct=median_three(np.trace(pooled, axis1=1, axis2=2) / seen.sum()),
         information_bits_plugin=median_three(np.array([plugin_information(one)[0] for one in pooled])),
         pairs=tuple(_pairs(trials, seen, pooled)),
+        **({} if trials.forced else compare_reports(trials, played, seed=seed)),
     )
+
+
+def compare_reports(trials: Trials, played: Confusions, *, seed: int = 0) -> dict[str, Any]:
+    """What a `Fit` says of plays that were not felt, and of felt and named, from as many simulated experiments.
+
+    The statistic of `p_reports` is X² over felt and not felt of every icon.
+    """
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 17]))
+    presented, seen = trials.presented.astype(np.int64), trials.unanswered.sum(axis=0)
+    total, silent, alert = presented.sum(axis=0), np.empty((EXPERIMENTS, len(trials.icons))), np.empty(EXPERIMENTS)
+    named = np.diagonal(played.probability, axis1=2, axis2=3)
+    for k in range(EXPERIMENTS):
+        invited = k % len(named), rng.integers(named.shape[1], size=len(presented))
+        felt = rng.binomial(presented, played.reported[invited])
+        silent[k] = total - felt.sum(axis=0)
+        alert[k] = rng.binomial(felt, named[invited]).sum() / total.sum()
+    share = 1.0 - played.reported.mean(axis=(0, 1), dtype=np.float64)
+    used = np.flatnonzero(total)
+    expected = (total * share)[used]
+    variance = expected * (1.0 - share[used])
+    off = [float((np.square(one[used] - expected) / variance).sum()) for one in (seen, *silent)]
+    found = []
+    for k in used.tolist():
+        low, high = (np.percentile(silent[:, k], COVER) / total[k]).tolist()
+        observed = float(seen[k] / total[k])
+        missed = not low <= observed <= high
+        found.append(ReportFit(trials.icons[k], int(total[k]), observed, float(share[k]), (low, high), missed))
+    return {"p_reports": _share(off), "felt_and_named": median_three(alert), "reports": tuple(found)}
 
 
 def _pairs(trials: Trials, seen: Array, pooled: Array) -> list[PairFit]:

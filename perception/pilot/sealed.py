@@ -35,24 +35,34 @@ class SealedError(InputError):
 
 @dataclass(frozen=True, slots=True)
 class SealedPrediction:
-    """A prediction as it was sealed: file, its SHA-256, version of the program, names, confusions (icons, icons)."""
+    """A prediction as it was sealed: file, its SHA-256, version of the program, names, confusions (icons, icons).
+
+    `felt_and_named` (icons,) is None in files of before it was predicted.
+    """
 
     source: str
     sha256: str
     version: str
     labels: tuple[str, ...]
     confusion: Array
+    felt_and_named: Array | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class SealedScores:
-    """Bits a trial and share correct of each score; `chance_bits` is the SD of the prediction's, were it the truth."""
+    """Bits a trial and share correct of each score; `chance_bits` is the SD of the prediction's, were it the truth.
+
+    `felt_and_named` is observed, predicted, and the SD of chance; None where nobody could say that nothing was felt, or
+    where the prediction does not have it.
+    """
 
     sealed: SealedPrediction
     trials: int
     observed_correct: float
     scores: dict[str, tuple[float, float]]
     chance_bits: float
+    unanswered: int = 0
+    felt_and_named: tuple[float, float, float] | None = None
 
     def to_json(self) -> str:
         """Every number as JSON text."""
@@ -66,8 +76,11 @@ def read_sealed(path: str | Path, icons: IconSet, rig: Rig) -> SealedPrediction:
         held = json.loads(data)
         version, digests, named = str(held["thermicon"]), dict(held["sha256"]), held["confusion"]
         labels, confusion = tuple(named["labels"]), np.array(named["probability"], dtype=np.float64)
+        shares = {icon["name"]: icon.get("felt_and_named") for icon in held.get("icons", ())}
+        known = bool(shares) and None not in shares.values()
+        alert = np.array([shares[name] for name in labels], dtype=np.float64) if known else None
         newest, own = ([int(part) for part in re.findall(r"\d+", text)[:3]] for text in (version, own_version()))
-    except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as wrong:
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as wrong:
         why = f"it has no {wrong}" if isinstance(wrong, KeyError) else quoted(str(wrong))
         raise SealedError(f"{path}: not a {WHAT}: {why}; {again}") from None
     if own and newest > own:
@@ -81,11 +94,13 @@ def read_sealed(path: str | Path, icons: IconSet, rig: Rig) -> SealedPrediction:
             raise SealedError(f"{path}: sealed for other {name}; give {cure}, or open it with thermicon {version}")
     if confusion.shape != (len(labels),) * 2 or not (confusion >= 0).all() or (abs(confusion.sum(1) - 1) > 1e-6).any():
         raise SealedError(f"{path}: confusion.probability has no row of probabilities for each icon; {again}")
-    return SealedPrediction(Path(path).name, hashlib.sha256(data).hexdigest(), version, labels, confusion)
+    if alert is not None and (alert.shape != (len(labels),) or not ((alert >= 0) & (alert <= 1)).all()):
+        raise SealedError(f"{path}: icons[].felt_and_named is no probability for each icon; {again}")
+    return SealedPrediction(Path(path).name, hashlib.sha256(data).hexdigest(), version, labels, confusion, alert)
 
 
 def opened(sealed: SealedPrediction, trials: Trials, icons: IconSet, rig: Rig) -> SealedScores:
-    """Score a sealed prediction on answers to its icons; trials without an answer are left out."""
+    """Score a sealed prediction on answers to its icons; trials without an answer count for felt and named alone."""
     counts, own = trials.pooled, sealed.confusion
     number, shown, logs = float(counts.sum()), counts.sum(axis=1), np.log2(own.clip(LEAST))
 
@@ -101,4 +116,9 @@ def opened(sealed: SealedPrediction, trials: Trials, icons: IconSet, rig: Rig) -
         "best that its matrix allows": score(own, shown[:, None] * own),
     }
     chance = math.sqrt(float(shown @ spread)) / number
-    return SealedScores(sealed, int(number), float(counts.trace() / number), scores, chance)
+    silent, both = int(trials.unanswered.sum()), None
+    if silent and (alert := sealed.felt_and_named) is not None:
+        plays = trials.presented.sum(axis=0) / trials.total
+        spread = math.sqrt(float(plays @ (alert * (1.0 - alert))) / trials.total)
+        both = float(counts.trace() / trials.total), float(plays @ alert), spread
+    return SealedScores(sealed, int(number), float(counts.trace() / number), scores, chance, silent, both)

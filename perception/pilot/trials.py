@@ -1,5 +1,6 @@
-"""Answers of an identification experiment, with their scores: per cent correct, bits.
+"""Answers of an identification experiment, with their scores: felt and named, named, bits.
 
+A trial without an answer is a play that was not felt: a miss of *felt and named*, and no part of *named* and of bits.
 Bits are the plug-in estimate, biased upwards by about (cells − rows − columns + 1)/(2·trials·ln 2) with counts of what
 was used (Miller 1955), and less that bias. Answers that are possible but did not occur are not counted. A few
 participants may happen to be alike, or right throughout: no interval is narrower than Wilson's.
@@ -26,9 +27,9 @@ class Trials:
     source, digest
         Name of the file, and the first 16 digits of its SHA-256.
     unanswered
-        Trials without an answer (participants, icons presented).
-    passed
-        Rows of the file with neither an icon nor an answer.
+        Trials without an answer, not felt (participants, icons presented).
+    passed, missing
+        Rows of the file with neither an icon nor an answer; trials marked as missing, which do not count.
     grouped
         Whether the counts of a group are given as those of one participant.
 
@@ -47,6 +48,7 @@ class Trials:
     unanswered: Array = field(default_factory=lambda: np.zeros((1, 1)))
     passed: int = 0
     grouped: bool = False
+    missing: int = 0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "unanswered", np.broadcast_to(self.unanswered, np.shape(self.counts)[:2]))
@@ -69,6 +71,11 @@ class Trials:
     def presented(self) -> Array:
         """Number of presentations to each participant of each icon (participants, icons)."""
         return np.asarray(self.counts.sum(axis=2) + self.unanswered)
+
+    @property
+    def forced(self) -> bool:
+        """Whether each trial has an answer, as where nobody could say that nothing was felt: named alone is known."""
+        return not self.unanswered.any()
 
     @property
     def total(self) -> int:
@@ -95,6 +102,7 @@ FEWEST = 2
 class AnswerScore:
     """Per cent correct, with a 95 % interval, and bits of some answers; trials without one are not correct.
 
+    `named` is of the trials with an answer (None: there is none), as bits are; `proportion_correct` is felt and named.
     `information_bits_plugin` less its `information_bits_bias` are `information_bits`, within what a set can carry.
     """
 
@@ -106,6 +114,8 @@ class AnswerScore:
     information_bits_bias: float
     information_bits: float
     unanswered: int = 0
+    named: float | None = None
+    named_interval: tuple[float, float] | None = None
 
 
 def plugin_information(counts: Array) -> tuple[float, float]:
@@ -132,22 +142,30 @@ def score(who: str, counts: Array, unanswered: float | Array = 0.0) -> AnswerSco
 
     `unanswered` trials are not correct, and have no bits. The interval is Wilson's, or the jackknife's where wider.
     """
-    pooled = counts.sum(axis=0)
-    trials = counts.sum(axis=(1, 2)) + unanswered
-    total, correct = float(trials.sum()), float(np.trace(pooled))
-    low, high = wilson(correct, total)
-    if len(counts) >= FEWEST:
-        from scipy.stats import t
-
-        without = pooled - counts
-        each = np.trace(without, axis1=1, axis2=2) / (total - trials)
-        spread = math.sqrt((len(each) - 1) / len(each) * float(np.square(each - each.mean()).sum()))
-        half = float(t.ppf(0.975, len(each) - 1)) * spread
-        low, high = max(min(correct / total - half, low), 0.0), min(max(correct / total + half, high), 1.0)
+    pooled, hits = counts.sum(axis=0), np.trace(counts, axis1=1, axis2=2)
+    answered = counts.sum(axis=(1, 2))
+    trials = answered + unanswered
+    total = float(trials.sum())
+    (correct, ends), some = _share(hits, trials), answered > 0.0
+    named = _share(hits[some], answered[some]) if some.any() else (None, None)
     bits, bias = plugin_information(pooled) if pooled.any() else (0.0, 0.0)
     corrected = min(max(bits - bias, 0.0), math.log2(len(pooled)))
-    missing = int(total - pooled.sum())
-    return AnswerScore(who, int(total), correct / total, (low, high), bits, bias, corrected, missing)
+    silent = int(total - pooled.sum())
+    return AnswerScore(who, int(total), correct, ends, bits, bias, corrected, silent, *named)
+
+
+def _share(hits: Array, trials: Array) -> tuple[float, tuple[float, float]]:
+    """Share of the trials (participants,) that are hits, and its interval."""
+    right, total = float(hits.sum()), float(trials.sum())
+    low, high = wilson(right, total)
+    if len(hits) >= FEWEST:
+        from scipy.stats import t
+
+        each = (right - hits) / (total - trials)
+        spread = math.sqrt((len(each) - 1) / len(each) * float(np.square(each - each.mean()).sum()))
+        half = float(t.ppf(0.975, len(each) - 1)) * spread
+        low, high = max(min(right / total - half, low), 0.0), min(max(right / total + half, high), 1.0)
+    return right / total, (low, high)
 
 
 def wilson(successes: float, trials: float) -> tuple[float, float]:

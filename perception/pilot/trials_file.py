@@ -4,6 +4,7 @@ import hashlib
 import re
 import warnings
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -27,8 +28,10 @@ LONGEST_LABEL = 100
 MOST, PER_CENT = 1e6, "write numbers of answers (a per cent of a row times its number of trials)"
 ALIKE = 0.55
 """A cell that is so much alike an icon is a slip of the pen, not an instruction."""
-NOTHING = ("", "no answer", "no response", "no_response", "missing", "–", "timeout", *NOTHINGS)
-"""What experiments write where nobody answered."""
+UNFELT = ("", "none", "no answer", "no response", "no_response", "not felt", "timeout", "null", "–", "-", "--", "---")
+"""What experiments write where nothing was answered: the play was not felt."""
+NOTHING = (*UNFELT, "missing", *NOTHINGS)
+"""The same, and what stands for trials that are lost: these are none."""
 WIDE = re.compile(r"(?:trial[_ .-]?(\d+)[_ .-])?(icon|presented|answer|respon(?:ded|se)|trial)[_ .-]?(\d+)?", re.I)
 ASKED, WIDE_EXAMPLE = ("icon", "presented"), "participant,icon_1,answer_1,icon_2,answer_2"
 """Words of `WIDE` for what was presented, and how such a line begins."""
@@ -47,8 +50,8 @@ def read_trials(
     A CSV file has the columns participant, trial, presented and responded, where trials are numbered anew in each block
     also block; or one row per participant with icon_1, answer_1 and so on; or a matrix of counts, a row for each icon
     presented and a column for each answer, which is one group. Other columns are left alone, semicolons and tabs also
-    separate them, and lines that begin with # are comments. Where nobody answered, the cell is empty or one of
-    `NOTHING`. Participants are in the order of the file.
+    separate them, and lines that begin with # are comments. A play that was not felt has an answer of `UNFELT`, such as
+    an empty cell; others of `NOTHING`, such as missing, are no trials. Participants are in the order of the file.
 
     Parameters
     ----------
@@ -87,7 +90,7 @@ def read_trials(
         table = grid if len(grid.rows) <= len(names) + 1 else table
     if "responded" not in table.header and len(places.keys() & set(table.header)) > 1:
         matrix = _matrix(file, table, places)
-        return Trials(names, ("all",), matrix[None, :, :-1], file.name, digest, matrix[None, :, -1], grouped=True)
+        return replace(_counted(matrix[None], names, ("all",), file.name, digest), grouped=True)
     runs: dict[str, list[dict[tuple[str, str], tuple[int, int]]]] = {}
     lines: dict[tuple[str, tuple[str, str]], int] = {}
     passed, strange = 0, ("", "")
@@ -95,6 +98,7 @@ def read_trials(
     for line, (participant, block, number, *cells) in _asked(file, table):
         where = f"{file}:{line}"
         icon, answer = ("" if cell not in places and cell.casefold() in NOTHING else cell for cell in cells)
+        silent = len(names) + (cells[1].casefold() not in UNFELT)
         if answer not in places and icon not in places and not nearest_words(icon.casefold(), folded, 1, ALIKE):
             passed, strange = passed + 1, strange if strange[0] else (icon, where)
             continue
@@ -108,9 +112,9 @@ def read_trials(
                 )
             own.append({})  # the numbers start anew, as they do with each block
         lines[person, key], shown = line, places[_icon(icon, "presented", places, where)]
-        own[-1][key] = shown, places[_icon(answer, "responded", places, where)] if answer else len(names)
+        own[-1][key] = shown, places[_icon(answer, "responded", places, where)] if answer else silent
     check_labels(file, runs)
-    counts = np.zeros((len(runs), len(names), len(names) + 1))
+    counts = np.zeros((len(runs), len(names), len(names) + 2))
     for place, (person, own) in enumerate(runs.items()):
         if any(run == before for before, run in pairwise(own)):
             raise TrialsError(
@@ -118,11 +122,19 @@ def read_trials(
                 "remove the copy, or name the blocks in a column block"
             )
         np.add.at(counts[place], tuple(np.array([pair for run in own for pair in run.values()]).T), 1.0)
-    if not counts[..., :-1].any():
+    if not counts[..., :-2].any():
         if strange[0]:
             _icon(strange[0], "presented", places, strange[1])
         raise TrialsError(f"{file}: no row has both an icon and an answer of the set; write one row per trial")
-    return Trials(names, tuple(runs), counts[..., :-1], file.name, digest, counts[..., -1], passed)
+    return replace(_counted(counts, names, tuple(runs), file.name, digest), passed=passed)
+
+
+def _counted(counts: Array, icons: tuple[str, ...], people: tuple[str, ...], file: str, digest: str) -> Trials:
+    """Trials from counts (participants, icons, answers, not felt, missing); who has none took no part."""
+    there = np.flatnonzero(counts[..., :-1].any(axis=(1, 2)))
+    who, own = tuple(people[k] for k in there), counts[there]
+    lost = int(counts[..., -1].sum())
+    return Trials(icons, who, own[..., :-2], file, digest, own[..., -2], missing=lost)
 
 
 def _asked(path: Path, table: Table) -> Iterator[tuple[int, list[str]]]:
@@ -144,12 +156,15 @@ def _asked(path: Path, table: Table) -> Iterator[tuple[int, list[str]]]:
 
 
 def _matrix(path: Path, table: Table, places: Mapping[str, int]) -> Array:
-    """Counts (icons, icons + 1) of a matrix whose rows are icons presented and columns answers, the last no answer."""
+    """Counts (icons, icons + 2) of a matrix: rows are icons presented, columns answers, then not felt, and missing."""
     first, *names = (name for place, name in enumerate(table.header) if name or not place)
     none = [name for name in names if name not in places and name.casefold() in NOTHING]
     top = f"{path}:{table.line}"
-    said = [len(places) if name in none else places[_icon(name, "a column", places, top)] for name in names]
-    counts: Array = np.zeros((len(places), len(places) + 1))
+    said = [
+        len(places) + (name.casefold() not in UNFELT) if name in none else places[_icon(name, "a column", places, top)]
+        for name in names
+    ]
+    counts: Array = np.zeros((len(places), len(places) + 2))
     for line, row in table.records((first, *names)):
         where = f"{path}:{line}"
         shown, cells = places[_icon(row[first], "a row", places, where)], [row[name] or "0" for name in names]
@@ -160,7 +175,7 @@ def _matrix(path: Path, table: Table, places: Mapping[str, int]) -> Array:
             raise TrialsError(f"{where}: {quoted(wrong[0])} is not a count; {PER_CENT}")
         counts[shown, said] = numbers
     sums = counts.sum(axis=1)
-    if not counts[:, :-1].any():
+    if not counts[:, :-2].any():
         raise TrialsError(f"{path}: every count is 0; write how often each answer was given")
     if (np.abs(sums[sums > 0] - 100) <= 1).all():
         warnings.warn(f"{path}: the rows sum to 100, read as counts; if they are per cents, {PER_CENT}", stacklevel=3)

@@ -138,18 +138,18 @@ def plot_sensitivity(found: Sensitivity, ax: Axes | None = None) -> Axes:
 
 
 def plot_observed(found: Observed[Any, Any], ax: Axes | None = None) -> Axes:
-    """Draw the proportion correct of each set with its 95 % interval, before the data were seen and after."""
+    """Draw what is felt and named of each set with its 95 % interval, before the data were seen and after."""
     axes = new_axes(ax, (6.4, 1.4 + 0.6 * len(found.predictions)))
     places = np.arange(len(found.predictions), dtype=np.float64)
     for when, shift, colour in (("before", -HEIGHT / 3, GREY), ("after", HEIGHT / 3, DARK)):
-        shares = [getattr(each, when).proportion_correct for each in found.predictions]
+        shares = [getattr(each, when).felt_and_named for each in found.predictions]
         middle, low, high = 100.0 * np.array(shares).T
         axes.errorbar(middle, places + shift, xerr=(middle - low, high - middle), fmt="o", color=colour, label=when)
     axes.set_yticks(places, [fill(each.before.title or "set", 20) for each in found.predictions])
     axes.set_ylim(len(places) - 0.5, -1.0)
     axes.spines[["top", "right", "left"]].set_visible(False)
-    axes.set_xlabel("correct (%), mean over people\nand 95 % of laboratories")
-    axes.set_title("Correct before and after the data", loc="left")
+    axes.set_xlabel("felt and named (%), mean over people\nand 95 % of laboratories")
+    axes.set_title("Felt and named before and after the data", loc="left")
     axes.legend(frameon=False, loc="upper center", ncols=2)
     return axes
 
