@@ -12,7 +12,7 @@ const TEXT_LAGS_MS = 100; // behind a pulled corner
 class DesignView {
   /** `id` tells one model of the kernel from another. */
   constructor(root, flow, say, id) {
-    Object.assign(this, { root, flow, say, editSeq: 0, notes: "", onLocalText: () => {} });
+    Object.assign(this, { root, flow, say, editSeq: 0, asked: 0, drawn: 0, notes: "", onLocalText: () => {}, onAsked: () => {} });
     this.unsaved = new UnsavedText(id, (text) => this.tellLeft(text));
     this.editor = new Editor(root, {
       onText: (text) => this.edited(text),
@@ -22,7 +22,7 @@ class DesignView {
     this.timeline = new Timeline(root, (message) => flow.post(message), say);
     this.timeline.onHandle = (line, follow) => this.editor.pointAt(line, follow);
     this.badge = new Badge(say);
-    this.strip = new Strip((text) => flow.post({ type: "goal", text }), say);
+    this.strip = new Strip((text) => this.ask({ type: "goal", text }), say);
     this.element = this.build();
   }
 
@@ -31,7 +31,7 @@ class DesignView {
     const button = (type, sign, name, keys) =>
       make("button", { type: "button", class: "tm-button", title: `${name} (${keys})`, onclick: () => flow.post({ type }) },
         make("span", { "aria-hidden": true, class: "tm-sign" }, sign), name);
-    this.picker = make("select", { class: "tm-picker", onchange: () => flow.post({ type: "icon", name: this.picker.value }) });
+    this.picker = make("select", { class: "tm-picker", onchange: () => this.ask({ type: "icon", name: this.picker.value }) });
     this.undo = button("undo", "\u21b6", "Undo", "Ctrl+Z");
     this.redo = button("redo", "\u21b7", "Redo", "Ctrl+Shift+Z");
     this.noteList = make("ul", { class: "tm-notes", "aria-label": "Notes", hidden: true });
@@ -42,9 +42,29 @@ class DesignView {
   }
 
   edited(text) {
-    this.editSeq = this.flow.post({ type: "text", text });
+    this.editSeq = this.ask({ type: "text", text });
     this.unsaved.note(text);
     this.onLocalText(text);
+  }
+
+  /** Posts what the page shows already, while badge, strip and curves are those of what stood there before. */
+  ask(message) {
+    this.asked = this.flow.post(message);
+    this.onAsked();
+    return this.asked;
+  }
+
+  /** Shows whether all this is older than the text: since no kernel answers, one is computing, or the text has errors. */
+  age(late, computing) {
+    if (!this.frame) return;
+    const { icon, badge, stale } = this.frame;
+    const why = late ? "no answer from the kernel" : computing && !stale ? "being computed" : "";
+    const shown = why ? { colour: "grey", text: `not judged: ${why}`, more: [] } : badge;
+    const older = Boolean(why || stale);
+    for (const place of [this.root, this.root.closest(".thermicon")]) place?.toggleAttribute("data-older", older);
+    this.badge.show(shown, computing && !late);
+    this.strip.age(older);
+    Object.assign(this.root.dataset, { icon: icon ?? "", colour: shown.colour });
   }
 
   /** The kernel offers what an earlier bench left, above the editor. */
@@ -70,10 +90,9 @@ class DesignView {
     this.showIcons(frame);
     this.undo.disabled = !frame.can_undo;
     this.redo.disabled = !frame.can_redo;
-    this.badge.show(frame.badge);
     this.showNotes(frame.notes);
     this.timeline.show(frame);
-    Object.assign(this.root.dataset, { icon: frame.icon ?? "", colour: frame.badge.colour });
+    this.frame = frame;
   }
 
   /** While a corner is pulled, the text follows after the curves, once the page has time. */
@@ -140,17 +159,20 @@ class Badge {
     this.button.setAttribute("aria-expanded", String(!this.more.hidden));
   }
 
-  show({ colour, text, more }) {
+  /** `passing`: it stands for moments only, so that screen readers are not told. */
+  show({ colour, text, more }, passing) {
     const { word, sign } = BADGES[colour] ?? BADGES.grey;
     this.element.dataset.colour = colour;
     setText(this.pill, `${sign} ${word}`);
-    setText(this.text, text.startsWith(`${word}: `) ? text.slice(word.length + 2) : text); // the pill says the word
+    setText(this.text, text.slice(text.indexOf(`${word}: `) < 0 ? 0 : text.indexOf(`${word}: `) + word.length + 2)); // the pill says the word
     this.button.title = text;
     const lines = (more ?? []).join("\n");
     if (lines !== this.lines) {
       this.lines = lines;
       this.more.replaceChildren(...(more ?? []).map((line) => make("li", {}, line)));
+      this.open(!this.more.hidden);
     }
+    if (passing) return;
     if (this.colour !== null && this.colour !== colour) this.say(`Safety: ${word}. ${text}`);
     this.colour = colour;
   }

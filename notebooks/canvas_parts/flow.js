@@ -82,8 +82,9 @@ class Flow {
       clearTimeout(this.timer);
       this.inFlight = null;
     }
-    if (this.late) this.onLate(false);
+    const wasLate = this.late;
     this.late = false;
+    if (wasLate) this.onLate(false);
     this.next();
     return sent;
   }

@@ -46,6 +46,15 @@ class Workbench {
     this.copy.hidden = !text;
     setText(this.copy, "Copy text");
     setText(this.lateText, late ? LATE + text : "");
+    this.age();
+  }
+
+  /** Whether what is shown is older than the text is known here: what a view was asked and has not drawn, and silence. */
+  age() {
+    const all = [...(siblings.get(this.key) ?? [])].filter(({ view }) => view?.age);
+    const late = all.some(({ flow }) => flow.late);
+    const computing = all.some(({ view }) => view.asked > view.drawn);
+    for (const { view } of all) view.age(late, computing);
   }
 
   async copyText() {
@@ -74,7 +83,9 @@ class Workbench {
     if (kind !== this.kind) this.become(kind);
     if (!this.view.element.isConnected) this.place.replaceChildren(this.view.element);
     const frame = VIEWS[kind].read(meta, buffers);
+    this.view.drawn = this.flow.answered;
     this.view.show(frame);
+    this.age();
     if (frame.troubles) this.sayTroubles(frame.troubles);
     this.root.dataset.seq = frame.seq;
     if (kind === "design") nameControls(this.root);
@@ -88,6 +99,7 @@ class Workbench {
     this.kind = kind;
     this.root.dataset.view = kind;
     this.view = new VIEWS[kind].make(this.root, this.flow, this.say, typeof this.key === "string" ? this.key : uniqueId("model"));
+    this.view.onAsked = () => this.age();
     this.view.onLocalText = (text) => this.tellSiblings((view) => view.takeText?.(text));
   }
 

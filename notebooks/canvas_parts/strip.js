@@ -3,7 +3,7 @@
 class Strip {
   /** `onGoal(text)` receives a goal that was typed. */
   constructor(onGoal, say) {
-    Object.assign(this, { say, said: null });
+    Object.assign(this, { say, said: null, older: false, told: null });
     const input = { type: "text", class: "tm-goal", placeholder: "90 % felt-and-named", title: "goal of the set, kept in its text", maxlength: 300 };
     this.goal = make("input", { ...input, onchange: () => onGoal(this.goal.value) });
     const number = () => make("b", {}, "–");
@@ -13,18 +13,29 @@ class Strip {
       make("span", {}, "icon ", this.icon, " felt and named, felt by ", this.felt));
   }
 
+  /** The numbers stay, pale; whether a goal is met is not known of another text. */
+  age(older) {
+    if (older === this.older) return;
+    this.older = older;
+    if (this.said) this.show(this.said);
+  }
+
   show(given) {
+    const older = this.older || given.stale;
     const nearly = given.rough ? "≈ " : "";
     for (const [part, name] of [[this.whole, "set"], [this.icon, "icon"], [this.felt, "felt"]]) {
       setText(part, given[name] === "–" ? "–" : nearly + given[name]);
     }
     if (given.goal !== this.said?.goal) this.goal.value = given.goal;
-    setText(this.met, { true: "✓ met", false: "✕ not met" }[given.met] ?? (given.goal ? "?" : ""));
-    this.met.title = given.binding;
+    const judged = older ? "? not judged" : { true: "✓ met", false: "✕ not met" }[given.met] ?? "?";
+    setText(this.met, given.goal ? judged : "");
+    this.met.title = older ? "" : given.binding;
     this.element.title = given.about;
-    this.element.classList.toggle("tm-old", given.stale);
-    Object.assign(this.element.dataset, { stale: given.stale, rough: given.rough });
-    if (!given.stale && !given.rough && this.said?.met !== given.met && given.goal) this.say(`Goal ${given.met ? "met" : "not met"}. ${given.binding}`);
+    this.element.setAttribute("aria-label", older ? "Predictions, older than the text" : "Predictions");
+    this.element.toggleAttribute("data-older", older);
     this.said = given;
+    if (older || given.rough || !given.goal || this.told === given.met) return;
+    this.told = given.met;
+    this.say(`Goal ${given.met ? "met" : "not met"}. ${given.binding}`);
   }
 }

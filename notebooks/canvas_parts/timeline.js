@@ -42,10 +42,10 @@ class Timeline {
       },
       this.stack, this.axis,
     );
-    this.staleTag = make("div", { class: "tm-stale-tag", hidden: true }, "drawn from the last valid text");
+    this.olderTag = make("div", { class: "tm-older-tag" }, "older than the text");
     this.nothing = make("p", { class: "tm-nothing", hidden: true }, "Nothing to draw yet.");
     this.tip = make("div", { class: "tm-tip", role: "tooltip", hidden: true });
-    this.element = make("div", { class: "tm-timeline" }, help, this.stage, this.staleTag, this.nothing, this.tip);
+    this.element = make("div", { class: "tm-timeline" }, help, this.stage, this.olderTag, this.nothing, this.tip);
     this.element.timeline = this; // for tests and measurements
   }
 
@@ -60,8 +60,7 @@ class Timeline {
     const empty = frame.panels.length === 0;
     this.nothing.hidden = !empty;
     this.axis.hidden = empty;
-    this.staleTag.hidden = empty || !frame.stale;
-    this.element.classList.toggle("tm-is-stale", Boolean(frame.stale));
+    this.olderTag.hidden = empty;
     this.drawAll();
   }
 
@@ -206,7 +205,7 @@ class Timeline {
   reading() {
     const parts = this.panels.flatMap(({ values }, k) =>
       this.frame.panels[k].series.map((series, j) => `${series.label} ${values[j].textContent} ${this.frame.panels[k].unit}`));
-    return `At ${numberText(this.cursor, 2)} s: ${parts.join(", ")}`;
+    return `${this.root.hasAttribute("data-older") ? "Older than the text. " : ""}At ${numberText(this.cursor, 2)} s: ${parts.join(", ")}`;
   }
 
   showTip() {

@@ -65,9 +65,8 @@ class ExportView(LiveView[ExportRequest]):
         controls = [self.device, self.form, self.which, self.folder]
         controls += [self.overwrite, self.insist, self.button]
         left = widgets.VBox([*controls, said["status"], said["written"]], layout={"flex": "1 1 300px"})
-        self.body = widgets.VBox(
-            [said["delivered"], said["gate"], said["figure"]], layout={"flex": "3 1 700px", "min_width": "0"}
-        )
+        verdicts = widgets.VBox([said["delivered"], said["gate"], said["figure"]]).add_class("thermicon-safety")
+        self.body = widgets.VBox([verdicts], layout={"flex": "3 1 700px", "min_width": "0"})
         self.stale_parts = (self.body,)
         row = widgets.Box([left, self.body]).add_class("thermicon-row")
         self.box = widgets.VBox([row]).add_class("thermicon-export")

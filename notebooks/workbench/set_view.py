@@ -71,6 +71,7 @@ class SetView(LiveView[SetRequest]):
         placed = widgets.VBox([said["map"]], layout={"flex": "2 1 270px", "min_width": "0"})
         self._below = _row(overlay, reasons, placed).add_class("thermicon-pair")
         self.body = widgets.VBox([_row(table, self._maps), said["notes"], self._below, said["caveat"]])
+        said["caveat"].add_class("thermicon-safety")
         said["choice"].add_class("thermicon-choice").layout.display = "none"
         self.box = widgets.VBox([top, said["choice"], self.body]).add_class("thermicon-set")
         self.body.layout.display = "none"

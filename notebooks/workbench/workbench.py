@@ -230,6 +230,9 @@ class Workbench:
 
         live: tuple[SetStrip | SetView | ExportView | VersionsView, ...] = (strip, ranked, export, versions)
 
+        for part in (*ranked.stale_parts, *export.stale_parts):
+            part.add_class("thermicon-judged")  # pale where the page itself knows that it is older than the text
+
         def shown(change: Any) -> None:
             bar.beside(design=change["new"] == 0)
             for place, view in enumerate(live):

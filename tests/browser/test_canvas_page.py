@@ -65,7 +65,7 @@ def test_an_error_is_marked_and_named_with_its_cure(drawn: Bench) -> None:
     assert wrong.inner_text() == "4"
     assert page.locator(".tm-go").inner_text() == "1 error, line 5"
     assert page.locator(".tm-first").inner_text() == "E102 missing unit: this number has no unit"
-    assert page.locator(".tm-stale-tag").is_visible()
+    assert page.locator(".tm-older-tag").is_visible()
     assert page.locator(".cm-content").get_attribute("aria-invalid") == "true"
     wrong.hover()
     assert page.locator(".cm-diagnostic .tm-hint").inner_text() == 'a time is written as "4 s"'
@@ -140,8 +140,8 @@ def test_the_strip_says_set_goal_and_icon_and_is_pale_while_the_text_is_newer(dr
     assert strip.locator("b").all_inner_texts() == ["93 %", "✓ met", "92 %", "100 %"]
     assert goal.input_value() == "correct >= 90 %"
     drawn.frame({**numbers, "stale": True, "rough": True, "met": False, "binding": "a and b"})
-    assert "tm-old" in strip.get_attribute("class")
-    assert strip.locator("b").all_inner_texts() == ["≈ 93 %", "✕ not met", "≈ 92 %", "≈ 100 %"]
+    assert strip.get_attribute("aria-label") == "Predictions, older than the text"
+    assert strip.locator("b").all_inner_texts() == ["≈ 93 %", "? not judged", "≈ 92 %", "≈ 100 %"]
     goal.fill("bits >= 2")
     goal.press("Enter")
     assert drawn.sent("goal")[-1]["text"] == "bits >= 2"

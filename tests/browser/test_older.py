@@ -1,0 +1,141 @@
+"""What the workbench shows of an earlier text says so, so that no word on safety stands beside text that nobody judged."""
+
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.jupyter import PANEL
+from tests.browser.onbench import TWO, open_tab, root, type_text
+from tests.browser.staticpage import TROUBLE, Bench, design
+
+UNSAFE = TWO.replace("warm by 4 °C at 2 °C/s", "cool by 25 °C at 30 °C/s", 1)
+WRONG = UNSAFE.replace("hold for 2 s", "hold for 2", 1)
+KERNEL = f"{PANEL}.sessionContext.session.kernel"
+# Words beside unsafe text, in each picture of the page: of the badge, of the goal, of what the export tab says.
+WATCH = """() => {
+  const seen = window.seen = new Set(), words = ".tm-pill, .tm-met, .thermicon-export summary, .thermicon-export .th-good";
+  const look = () => {
+    if (document.querySelector(".tm-editor").editor.text.includes("25 °C"))
+      for (const one of document.querySelectorAll(words))
+        if (one.checkVisibility({ visibilityProperty: true })) seen.add(one.innerText);
+    requestAnimationFrame(look);
+  };
+  look();
+}"""
+DONE_TO_THE_KERNEL = {
+    "computing": "() => {}",
+    "busy": f"() => {{ {KERNEL}.requestExecute({{ code: 'import time; time.sleep(6)' }}); }}",
+    "killed": f"() => {{ {KERNEL}.requestExecute({{ code: 'import os; os.kill(os.getpid(), 9)' }}); }}",
+    "cut": "() => { WebSocket.prototype.send = () => {}; }",
+}
+
+
+def is_older(page: Page, cause: str) -> None:
+    """Badge, strip, numbers and curves say that they are of an earlier text, to eyes and to screen readers."""
+    expect(page.locator(".tm-badge-button").first).to_have_text(f"? not judged{cause}")
+    expect(page.locator('.tm-root[data-view="design"]')).to_have_attribute("data-colour", "grey")
+    expect(page.get_by_role("group", name="Predictions, older than the text")).to_be_visible()
+    expect(page.locator(".tm-met").first).to_have_text("? not judged")
+    expect(page.locator(".tm-older-tag").first).to_have_text("older than the text")
+    expect(page.locator(".tm-older-tag").first).to_be_visible()
+    expect(page.locator(".tm-base").first).to_have_css("opacity", "0.5")
+    soft = page.locator(".tm-entry").first.evaluate("e => getComputedStyle(e).color")
+    expect(page.locator(".tm-value").first).to_have_css("color", soft)
+    expect(page.locator(".tm-strip b").first).to_have_css("color", soft)
+
+
+@pytest.mark.parametrize("state", DONE_TO_THE_KERNEL)
+def test_unsafe_text_that_nobody_judged_never_stands_beside_a_word_on_safety(bench: Page, state: str) -> None:
+    page = bench
+    type_text(page, f"# goal: named >= 10 %\n{TWO}".replace("named", "correct"))
+    expect(page.locator(".tm-met")).to_have_text("✓ met", timeout=60_000)
+    open_tab(page, "Export")
+    expect(page.locator(".thermicon-export")).to_contain_text("ready to be written", timeout=60_000)
+    open_tab(page, "Design")
+    page.evaluate(WATCH)
+    page.evaluate(DONE_TO_THE_KERNEL[state])
+    if state == "killed":
+        page.wait_for_timeout(1500)
+    type_text(page, UNSAFE.replace("cue 1", "# goal: correct >= 10 %\ncue 1"))
+    if state != "computing":
+        is_older(page, "no answer from the kernel")
+        expect(root(page).get_by_role("alert")).to_contain_text("No answer from the kernel")
+        open_tab(page, "Export")
+        page.wait_for_timeout(300)
+        open_tab(page, "Design")
+    if state in ("computing", "busy"):
+        expect(page.locator(".tm-pill")).to_have_text("✕ not safe")
+        expect(page.locator(".tm-base").first).to_have_css("opacity", "1")
+        type_text(page, WRONG)
+        is_older(page, "the text has errors")
+    else:
+        type_text(page, WRONG)
+        is_older(page, "no answer from the kernel")
+    seen = {word for word in page.evaluate("[...seen]") if word}
+    assert seen <= {"? not judged", "✕ not safe", "✕ not met", "✓ met"}, seen
+    assert state in ("computing", "busy") or seen == {"? not judged"}, seen
+
+
+def answered(bench: Bench, **changes: Any) -> None:
+    bench.answer(**changes)
+    expect(bench.page.locator(".tm-root").first).not_to_have_attribute("data-older", "")
+
+
+STRIP = {"type": "strip", "set": "93 %", "icon": "92 %", "felt": "100 %", "goal": "correct >= 90 %", "about": ""}
+
+
+def test_typed_text_goal_and_icon_are_not_judged_until_they_are_answered_in_every_view(made: Bench) -> None:
+    page = made.page
+    made.show()
+    made.draw()
+    made.frame({**STRIP, "stale": False, "rough": False, "met": True, "binding": ""})
+    pills = page.locator(".tm-pill")
+    for act in (
+        lambda: made.append("#"),
+        lambda: page.locator(".tm-goal").first.fill("bits >= 2") or page.keyboard.press("Enter"),
+        lambda: page.locator(".tm-picker").first.select_option("rise"),
+    ):
+        assert pills.all_inner_texts() == ["✓ limits kept"] * 2
+        act()
+        assert pills.all_inner_texts() == ["? not judged"] * 2
+        is_older(page, "being computed")
+        answered(made)
+    page.locator(".tm-stage").first.focus()
+    page.keyboard.press("]")
+    page.keyboard.press("ArrowUp")
+    assert pills.all_inner_texts() == ["✓ limits kept"] * 2, "a corner that is dragged leaves the text to the kernel"
+
+
+def test_what_is_older_is_told_where_it_lasts_and_the_details_of_the_badge_go(drawn: Bench) -> None:
+    page = drawn.page
+    page.locator(".tm-badge-button").click()
+    assert page.locator(".tm-badge-more").is_visible()
+    drawn.append("#")
+    assert page.locator(".tm-badge-more").is_hidden()
+    answered(drawn)
+    page.wait_for_timeout(800)
+    assert page.locator(".tm-live-region").inner_text() == "", "a moment is not told"
+    drawn.append("#")
+    drawn.said("Safety: not judged. not judged: no answer from the kernel")
+    page.locator(".tm-stage").focus()
+    page.keyboard.press("Home")
+    drawn.said("Older than the text. At 0.00 s: skin 32.00 °C")
+    drawn.answer(badge={"colour": "red", "text": "not safe: skin at 45 °C", "more": []})
+    drawn.said("Safety: not safe. not safe: skin at 45 °C")
+    drawn.frame(design(stale=True, troubles=[TROUBLE], badge={"colour": "grey", "text": "not judged: x", "more": []}))
+    drawn.append("#")
+    assert page.locator(".tm-badge-text").inner_text() == "x", "an error stays the reason while its cure is typed"
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_nothing_in_the_bar_moves_where_it_gets_older(page: Any, made: Bench, scheme: Any) -> None:
+    page.emulate_media(color_scheme=scheme)
+    made.draw()
+    made.frame({**STRIP, "stale": False, "rough": False, "met": False, "binding": ""})
+    places = "all => all.map((e) => JSON.stringify(e.getBoundingClientRect()))"
+    parts = page.locator(".tm-bar > *, .tm-strip > *, .tm-badge-button")
+    before = parts.evaluate_all(places)
+    made.append("#")
+    is_older(page, "being computed")
+    assert parts.evaluate_all(places) == before
