@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -119,6 +120,8 @@ def improve_command(
     model = crowd.load(where)
     how = {**crowd.asked, "goal": wanted, "parameters": crowd.draws(model), "observer": model}
     what: Objective = objective or ("felt-and-named" if up_to is not None else objective_of(wanted))
+    if has_families and not searched:
+        icons, must = _by_written_names(icons, must or [], where)
     command = commands(files, rig, crowd)
     written = next((str(path) for path in outputs if path.suffix == ".cue"), None)
     if up_to is not None:
@@ -253,9 +256,19 @@ def _best_of(found: Frontier, icons: IconSet, rig: Rig) -> IconSet:
 
 
 def _written(icons: IconSet, names: Sequence[str], rig: Rig) -> IconSet:
-    from thermicon.perception.selection.candidates import chosen_set
+    from thermicon.perception.selection.candidates import Candidate, set_of_run
 
-    return chosen_set(icons, names, rig.site)
+    return set_of_run(icons, [Candidate(icons[name]) for name in names], rig, f"best {len(names)}")
+
+
+def _by_written_names(icons: IconSet, must: Sequence[str], rig: Rig) -> tuple[IconSet, list[str]]:
+    """The icons as they would be written, so that the screen calls them as the file does, and those that must stay."""
+    from thermicon.perception.selection.candidates import members_of, set_of_run
+
+    found = members_of(icons)
+    pool = set_of_run(icons, found, rig, "members")
+    names = {each.icon.name: icon.name for each, icon in zip(found, pool, strict=True)}
+    return replace(pool, name=icons.name, title=icons.title), [names.get(name, name) for name in must]
 
 
 def _alone(names: Sequence[str], icons: IconSet, rig: Rig, how: dict[str, Any]) -> Ranking:
@@ -276,11 +289,10 @@ def beside_start(
     figure: FigureOptions,
 ) -> list[Block]:
     """Rank the found set and its start as the search did, judge both by the goal, and draw the found one."""
-    from thermicon.icons import IconSet
     from thermicon.perception import rank
     from thermicon.perception.selection.goal_result import judge_goal
 
-    start = IconSet(icons.name, icons.title, icons.context, icons.metadata, found.start)
+    start = replace(found.found, name=icons.name, title=icons.title, entries=found.start)
     goal, asked = how["goal"], {name: value for name, value in how.items() if name != "goal"}
     if how["observer"].posterior is None:
         asked["parameters"] = 0

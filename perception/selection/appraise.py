@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any, Unpack
 
 import numpy as np
@@ -43,8 +43,8 @@ class Appraisal:
     information_bits: float
     bits_per_s: float
     reached: float
-    each_felt_and_named: Array
-    confused: Array
+    each_felt_and_named: Array = field(compare=False)
+    confused: Array = field(compare=False)
 
     def value(self, objective: Objective) -> float:
         """The number by which an objective judges a set."""

@@ -25,7 +25,7 @@ from ..kernels.parallel import Progress
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..ranking.rank import rank
 from .appraise import Appraisal, appraise
-from .candidates import Candidate, at_ends, found_set, names_of
+from .candidates import FOUND, Candidate, at_ends, names_of, set_of_run
 from .goal import Goal, GoalPart, word_of
 from .request import Objective
 from .search_run import PEOPLE, Evaluator, SearchRun
@@ -166,11 +166,19 @@ def search(
         parts = sorted(judged, key=lambda part: (part.people is None, -(part.people or 0.0)))
     rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
 
+    def as_set(of: list[Candidate]) -> IconSet:
+        return set_of_run(icons, of, rig, FOUND, FOUND, f"seed {seed}")
+
+    def as_written(scores: Appraisal, of: list[Candidate]) -> Appraisal:
+        names = dict(zip((candidate.icon.name for candidate in of), names_of(of), strict=True))
+        a, b = scores.worst_pair
+        return replace(scores, worst_pair=(names[a], names[b]))
+
     def tell(tried: int, held: list[Candidate]) -> None:
         if progress is not None:
             progress(min(tried, evaluations), evaluations)
         if best_so_far is not None:
-            best_so_far(found_set(icons, held, seed))
+            best_so_far(as_set(held))
 
     start = run.start(few, rng)  # as a choice would
     tell(run.tried, start)
@@ -189,13 +197,11 @@ def search(
         persons = [one.new_laboratory.persons for one in ranked if one.new_laboratory is not None]
     place = max(range(len(sets)), key=lambda k: _merit(parts, objective, scores[k], persons[k]))
     best, after = finalists[place], scores[place]
-    names = dict(zip((candidate.icon.name for candidate in best), names_of(best), strict=True))
-    a, b = after.worst_pair
     return SearchResult(
-        found=found_set(icons, best, seed),
-        start=tuple(candidate.icon for candidate in start),
-        before=scores[0],
-        after=replace(after, worst_pair=(names[a], names[b])),
+        found=as_set(best),
+        start=tuple(as_set(start)),
+        before=as_written(scores[0], start),
+        after=as_written(after, best),
         objective=objective,
         seed=seed,
         evaluations=screened,
