@@ -70,7 +70,9 @@ def improve_command(
     ] = None,
     objective: Annotated[
         Objective | None,
-        typer.Option(help="What a choice or a search improves.  [default: that of the goal, or worst (pair)]"),
+        typer.Option(
+            help="What a choice or a search improves beside its goal.  [default: that of the goal, or worst (pair)]"
+        ),
     ] = None,
     must: Annotated[list[str] | None, opt("ICON", "An icon that must be chosen; may be given several times.")] = None,
     output: Annotated[
@@ -123,18 +125,23 @@ def improve_command(
     if has_families and not searched:
         icons, must = _by_written_names(icons, must or [], where)
     command = commands(files, rig, crowd)
+    refused = ""
     written = next((str(path) for path in outputs if path.suffix == ".cue"), None)
     if up_to is not None:
         tried = _frontier(icons, where, outputs, most=up_to, objective=what, **how)
+        best = _best_of(tried, icons, where)
         for path in outputs:
             if path.suffix == ".cue":
-                write_text(str(_best_of(tried, icons, where)), path)
+                if best is not None:
+                    write_text(str(best), path)
             elif path.suffix.lower() in FIGURE_SUFFIXES:
                 FigureOptions(path).write(lambda: tried.plot().figure)
             else:
                 write_frame(tried.to_frame(), path)
         figure.write(lambda: tried.plot().figure)
-        told = frontier_report(tried, icons.title, after_choices(tried, command, written))
+        told = frontier_report(tried, icons.title, after_choices(tried, command, written if best else None))
+        if written is not None and best is None:
+            refused = f"no choice {'meets the goal' if tried.goals else 'is distinguishable'}, and no set was written"
     elif searched:
         count = USUAL_EVALUATIONS if evaluations is None else evaluations
         found = _searched(icons, where, outputs, count=choose, objective=what, evaluations=count, **how)
@@ -157,6 +164,8 @@ def improve_command(
         told = rank_report(made, icons.title, cures(made.ranking, icons, where), following)
     if STDOUT not in outputs:
         show(told)
+    if refused:
+        fail(refused)
 
 
 def _frontier(icons: IconSet, rig: Rig, outputs: Sequence[Path], **how: Any) -> Frontier:
@@ -247,10 +256,10 @@ def chosen(
     )
 
 
-def _best_of(found: Frontier, icons: IconSet, rig: Rig) -> IconSet:
-    """The largest choice that does, as a set; bad input where none does."""
+def _best_of(found: Frontier, icons: IconSet, rig: Rig) -> IconSet | None:
+    """The largest choice that does, as a set; None where none does."""
     if (count := largest(found)) is None:
-        fail(f"no choice {'meets the goal' if found.goals else 'is distinguishable'}, and no set was written")
+        return None
     names = next(point.icons for point in found.points if len(point.icons) == count)
     return _written(icons, names, rig)
 

@@ -23,7 +23,7 @@ from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..observer.people import People
 from .request import Objective
 
-NOT_TOLD = ("reached", "each_felt_and_named", "confused")
+NOT_TOLD = ("reached", "each_felt_and_named", "detected", "confused")
 REACHED_BY = 0.95
 """Share of people who reach what a set is also judged by."""
 
@@ -32,8 +32,9 @@ REACHED_BY = 0.95
 class Appraisal:
     """One set at its own range: the worst pair by median d′, proportion correct, bits, and bits per second.
 
-    `reached` is what 95 % of people feel and name; `each_felt_and_named` (icons,) is that of single icons, and
-    `confused` (icons, icons) how often they are named as each other, the mean of both ways, diagonal: as themselves.
+    `reached` is what 95 % of people feel and name; `each_felt_and_named` (icons,) is that of single icons, `detected`
+    (icons,) how often they are reported, and `confused` (icons, icons) how often they are named as each other, the mean
+    of both ways, diagonal: as themselves.
     """
 
     worst_pair: tuple[str, str]
@@ -44,6 +45,7 @@ class Appraisal:
     bits_per_s: float
     reached: float
     each_felt_and_named: Array = field(compare=False)
+    detected: Array = field(compare=False)
     confused: Array = field(compare=False)
 
     def value(self, objective: Objective) -> float:
@@ -99,6 +101,7 @@ def appraise(
         information_bits=bits,
         bits_per_s=bits / float(np.mean(durations)),
         reached=float(np.quantile(alert.mean(axis=1), 1.0 - REACHED_BY)),
+        detected=felt.detected.probability.mean(axis=0),
         each_felt_and_named=alert.mean(axis=0),
         confused=0.5 * (pooled + pooled.T),
     )

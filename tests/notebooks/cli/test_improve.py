@@ -143,6 +143,25 @@ def test_an_icon_that_must_stay_may_be_called_as_a_member_or_as_it_is_written(cl
         assert "dip-4K" in said.stdout
 
 
+def test_the_table_stands_before_a_set_is_refused(cli: Cli, tmp_path: Path) -> None:
+    out, table = tmp_path / "out.cue", tmp_path / "out.csv"
+    asked = ("improve", "six-icons", "--people", 4, "--up-to", 3, "--intervals", 4, "-o", out, "-o", table)
+    said = cli(*asked, "--goal", "named >= 99.9 %")
+    words = " ".join(said.stdout.split())
+    assert said.exit_code and not out.exists() and len(pd.read_csv(table)) == 2
+    assert "met by none of these choices" in words and "no choice that was looked at meets the goal" in words
+    assert "no choice meets the goal, and no set was written" in said.stderr
+
+
+@pytest.mark.slow
+def test_a_choice_of_a_large_space_meets_what_icons_of_it_meet(cli: Cli, tmp_path: Path) -> None:
+    out, few = tmp_path / "out.cue", ("--people", 40, "--intervals", 32)
+    goal = ("--goal", "85 % felt-and-named for 90 % of people, detected >= 90 %")
+    said = cli.good("improve", "search-space", "--up-to", 4, *few, *goal, "-o", out)
+    assert "Goal: met by the best 4" in said.stdout
+    assert "Goal: met" in cli.good("rank", out, *few, *goal).stdout
+
+
 def test_a_row_for_each_number_of_icons(cli: Cli, tmp_path: Path) -> None:
     out, picture = tmp_path / "out.csv", tmp_path / "out.png"
     asked = ("improve", "six-icons", "--people", 4, "--up-to", 4, "--intervals", 4)
