@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -69,7 +70,9 @@ def improve_command(
     ] = None,
     objective: Annotated[
         Objective | None,
-        typer.Option(help="What a choice or a search improves.  [default: that of the goal, or worst (pair)]"),
+        typer.Option(
+            help="What a choice or a search improves beside its goal.  [default: that of the goal, or worst (pair)]"
+        ),
     ] = None,
     must: Annotated[list[str] | None, opt("ICON", "An icon that must be chosen; may be given several times.")] = None,
     output: Annotated[
@@ -119,19 +122,26 @@ def improve_command(
     model = crowd.load(where)
     how = {**crowd.asked, "goal": wanted, "parameters": crowd.draws(model), "observer": model}
     what: Objective = objective or ("felt-and-named" if up_to is not None else objective_of(wanted))
+    if has_families and not searched:
+        icons, must = _by_written_names(icons, must or [], where)
     command = commands(files, rig, crowd)
+    refused = ""
     written = next((str(path) for path in outputs if path.suffix == ".cue"), None)
     if up_to is not None:
         tried = _frontier(icons, where, outputs, most=up_to, objective=what, **how)
+        best = _best_of(tried, icons, where)
         for path in outputs:
             if path.suffix == ".cue":
-                write_text(str(_best_of(tried, icons, where)), path)
+                if best is not None:
+                    write_text(str(best), path)
             elif path.suffix.lower() in FIGURE_SUFFIXES:
                 FigureOptions(path).write(lambda: tried.plot().figure)
             else:
                 write_frame(tried.to_frame(), path)
         figure.write(lambda: tried.plot().figure)
-        told = frontier_report(tried, icons.title, after_choices(tried, command, written))
+        told = frontier_report(tried, icons.title, after_choices(tried, command, written if best else None))
+        if written is not None and best is None:
+            refused = f"no choice {'meets the goal' if tried.goals else 'is distinguishable'}, and no set was written"
     elif searched:
         count = USUAL_EVALUATIONS if evaluations is None else evaluations
         found = _searched(icons, where, outputs, count=choose, objective=what, evaluations=count, **how)
@@ -154,6 +164,8 @@ def improve_command(
         told = rank_report(made, icons.title, cures(made.ranking, icons, where), following)
     if STDOUT not in outputs:
         show(told)
+    if refused:
+        fail(refused)
 
 
 def _frontier(icons: IconSet, rig: Rig, outputs: Sequence[Path], **how: Any) -> Frontier:
@@ -244,18 +256,28 @@ def chosen(
     )
 
 
-def _best_of(found: Frontier, icons: IconSet, rig: Rig) -> IconSet:
-    """The largest choice that does, as a set; bad input where none does."""
+def _best_of(found: Frontier, icons: IconSet, rig: Rig) -> IconSet | None:
+    """The largest choice that does, as a set; None where none does."""
     if (count := largest(found)) is None:
-        fail(f"no choice {'meets the goal' if found.goals else 'is distinguishable'}, and no set was written")
+        return None
     names = next(point.icons for point in found.points if len(point.icons) == count)
     return _written(icons, names, rig)
 
 
 def _written(icons: IconSet, names: Sequence[str], rig: Rig) -> IconSet:
-    from thermicon.perception.selection.candidates import chosen_set
+    from thermicon.perception.selection.candidates import Candidate, set_of_run
 
-    return chosen_set(icons, names, rig.site)
+    return set_of_run(icons, [Candidate(icons[name]) for name in names], rig, f"best {len(names)}")
+
+
+def _by_written_names(icons: IconSet, must: Sequence[str], rig: Rig) -> tuple[IconSet, list[str]]:
+    """The icons as they would be written, so that the screen calls them as the file does, and those that must stay."""
+    from thermicon.perception.selection.candidates import members_of, set_of_run
+
+    found = members_of(icons)
+    pool = set_of_run(icons, found, rig, "members")
+    names = {each.icon.name: icon.name for each, icon in zip(found, pool, strict=True)}
+    return replace(pool, name=icons.name, title=icons.title), [names.get(name, name) for name in must]
 
 
 def _alone(names: Sequence[str], icons: IconSet, rig: Rig, how: dict[str, Any]) -> Ranking:
@@ -276,11 +298,10 @@ def beside_start(
     figure: FigureOptions,
 ) -> list[Block]:
     """Rank the found set and its start as the search did, judge both by the goal, and draw the found one."""
-    from thermicon.icons import IconSet
     from thermicon.perception import rank
     from thermicon.perception.selection.goal_result import judge_goal
 
-    start = IconSet(icons.name, icons.title, icons.context, icons.metadata, found.start)
+    start = replace(found.found, name=icons.name, title=icons.title, entries=found.start)
     goal, asked = how["goal"], {name: value for name, value in how.items() if name != "goal"}
     if how["observer"].posterior is None:
         asked["parameters"] = 0

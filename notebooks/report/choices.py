@@ -52,10 +52,15 @@ def laboratory(ranking: Ranking) -> str:
     return f"your laboratory, {ranking.observer}" if ranking.own_laboratory else "a new laboratory"
 
 
-def choice_lines(choice: Choice) -> Iterator[str]:
+def maximised(objective: str, goal: GoalResult | None) -> str:
+    """What a choice or a search maximised, in words."""
+    return NAMES[objective] if goal is None or not goal.goal.of_sets else "the margin of the goal"
+
+
+def choice_lines(choice: Choice, goal: GoalResult | None = None) -> Iterator[str]:
     """Report what was chosen, how certain that is, and the excluded icons."""
     objective = choice.objective
-    yield f"Best {len(choice.icons)} of {choice.pool}, by {NAMES[objective]}: {', '.join(choice.icons)}"
+    yield f"Best {len(choice.icons)} of {choice.pool}, by {maximised(objective, goal)}: {', '.join(choice.icons)}"
     score = f"within the range of all {choice.pool}: {scored(objective, choice.value)}"
     yield score + (f" ({' and '.join(choice.worst_pair)})" if objective == "worst" else "")
     if choice.optimal:

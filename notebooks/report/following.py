@@ -59,7 +59,8 @@ def after_choices(found: Frontier, command: Command, written: str | None) -> str
         return command("export", *PLAYED, file=written)
     count = largest(found)
     if count is None:
-        return f"no choice of these icons {'meets the goal' if found.goals else 'is distinguishable'}. {WIDER}"
+        those = "of these icons" if all(point.optimal for point in found.points) else "that was looked at"
+        return f"no choice {those} {'meets the goal' if found.goals else 'is distinguishable'}. {WIDER}"
     objective, goal = found.points[0].objective, _goal(found.goals[0].goal if found.goals else None)
     return command("improve", "--choose", str(count), "--objective", objective, *goal, "-o", "best.cue")
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from thermicon.icons.number_text import count_of, number, percent, percent_span
 
 from .blocks import Block, Bullets, Heading, Text, grid
-from .choices import NAMES, goal_lines, laboratory, left_out
+from .choices import NAMES, goal_lines, laboratory, left_out, maximised
 from .rank_details import trouble_lines
 from .rank_report import BARELY
 
@@ -50,6 +50,7 @@ def frontier_report(found: Frontier, title: str, following: str = "") -> list[Bl
     job, largest = found.job, found.points[-1]
     crowd = count_of(job.people, "virtual person", "virtual people")
     what_if = f" with {', '.join(job.rig.changes)}" if job.rig.changes else ""
+    aim = maximised(largest.objective, next(iter(found.goals), None))
     met = [point for point, goal in zip(found.points, found.goals, strict=False) if goal.met]
     named = met[-1] if met else largest
     amber = found.amber(named)
@@ -66,7 +67,7 @@ def frontier_report(found: Frontier, title: str, following: str = "") -> list[Bl
         grid(heads, rows, heads[:7]),
         Text("\n".join(said)),
         Text(
-            f"The best by {largest.objective} of {largest.pool} icons that can be "
+            f"The best by {aim} of {largest.pool} icons that can be "
             f"{'chosen' if found.goals else 'played'}, for {crowd} on the {job.rig.name} rig{what_if} (seed "
             f"{job.seed}). {_reached(found)} These are predictions of a model, not measurements."
         ),
@@ -116,7 +117,7 @@ def search_report(found: SearchResult, before: SetReport, after: SetReport, titl
         Text(f"Next: {following}"),
         Text(
             f"{found.evaluations} icons were tried on a nominal person and {found.refined} on {REFINING_PEOPLE} "
-            f"people, whatever --people is; what they maximised was {NAMES[found.objective]} (seed "
+            f"people, whatever --people is; what they maximised was {maximised(found.objective, after.goal)} (seed "
             f"{found.seed}). Of {count_of(found.finalists, 'set')} held at the end, this one was chosen by "
             f"{NAMES.get(found.chosen_by, found.chosen_by)}. Before and after are for "
             f"{count_of(ranking.people, 'virtual person', 'virtual people')} on the {ranking.job.rig.name} rig.\n"

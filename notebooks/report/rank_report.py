@@ -47,7 +47,7 @@ def rank_report(
         more = count_of(len(notes) - shown, "more note")
         notes = [*notes[:shown], Text(f"{more}: thermicon rank --details", "warn")]
     advice = edit_text(made, ranking.worst) if ranking.worst else ""
-    chosen = list(choice_lines(made.choice)) if made.choice else []
+    chosen = list(choice_lines(made.choice, made.goal)) if made.choice else []
     by = "" if ranking.observer == "shipped" else f", observer {ranking.observer}"
     table = f" The table is about all {len(icons)} icons together." * bool(chosen)
     short = f"Predicted, not measured: {crowd_text(ranking)}{by}.{table}"

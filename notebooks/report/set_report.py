@@ -87,7 +87,7 @@ def report_of(
     choice = None
     with progress_bar("intervals" if choosing is None else "choosing") as progress:
         if choosing is not None:
-            choice = choose(ranking, choosing, parameters=draws, progress=progress)
+            choice = choose(ranking, choosing, goal=goal, parameters=draws, progress=progress)
         elif draws:
             ranking = with_intervals(ranking, draws, step_counter(progress, draws))
     reached = None if goal is None else judge_goal(goal, ranking, choice)

@@ -23,7 +23,7 @@ from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..observer.people import People
 from .request import Objective
 
-NOT_TOLD = ("reached", "reached_named", "each_felt_and_named", "confused")
+NOT_TOLD = ("reached", "reached_named", "each_felt_and_named", "detected", "confused")
 REACHED_BY = 0.95
 """Share of people who reach what a set is also judged by."""
 
@@ -33,8 +33,8 @@ class Appraisal:
     """One set at its own range: the worst pair by median d′, proportion correct, bits, and bits per second.
 
     `reached` is what 95 % of people feel and name, `reached_named` what they name; `each_felt_and_named` (icons,) is
-    that of single icons, and `confused` (icons, icons) how often they are named as each other, the mean of both ways,
-    diagonal: as themselves.
+    that of single icons, `detected` (icons,) how often they are reported, and `confused` (icons, icons) how often they
+    are named as each other, the mean of both ways, diagonal: as themselves.
     """
 
     worst_pair: tuple[str, str]
@@ -46,6 +46,7 @@ class Appraisal:
     reached: float
     reached_named: float
     each_felt_and_named: Array = field(compare=False, repr=False)
+    detected: Array = field(compare=False, repr=False)
     confused: Array = field(compare=False, repr=False)
 
     def value(self, objective: Objective) -> float:
@@ -102,6 +103,7 @@ def appraise(
         bits_per_s=bits / float(np.mean(durations)),
         reached=float(np.quantile(alert.mean(axis=1), 1.0 - REACHED_BY)),
         reached_named=float(np.quantile(each, 1.0 - REACHED_BY)),
+        detected=felt.detected.probability.mean(axis=0),
         each_felt_and_named=alert.mean(axis=0),
         confused=0.5 * (pooled + pooled.T),
     )

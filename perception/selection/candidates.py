@@ -12,7 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from thermicon.circuit import Rig
 from thermicon.icons import CueErrors, Family, Icon, IconSet
+from thermicon.icons.model.context import Metadata
 from thermicon.icons.model.parameter import Parameter
 from thermicon.icons.model.statements import Repeat
 from thermicon.icons.number_text import number
@@ -64,11 +66,14 @@ def sample_candidates(families: Sequence[Family], count: int, rng: np.random.Gen
     for family in families:
         some = rng.choice(len(family), each, replace=False) if len(family) > each else np.arange(len(family))
         for index in np.sort(some):
-            places = np.unravel_index(index, [len(parameter) for parameter in family.parameters])
-            found.append(
-                candidate_at(family, [share_of(p, int(k)) for p, k in zip(family.parameters, places, strict=True)])
-            )
+            found.append(candidate_at(family, _shares(family, int(index))))
     return [candidate for candidate in found if candidate is not None]
+
+
+def _shares(family: Family, place: int) -> tuple[float, ...]:
+    """The shares of the member at a place of its family."""
+    places = np.unravel_index(place, [len(parameter) for parameter in family.parameters])
+    return tuple(share_of(each, int(k)) for each, k in zip(family.parameters, places, strict=True))
 
 
 def value_at(parameter: Parameter, share: float) -> float:
@@ -88,6 +93,17 @@ def share_of(parameter: Parameter, place: int) -> float:
     return (parameter.value(place) - low) / (high - low) if high > low else 0.5
 
 
+def members_of(icons: IconSet) -> list[Candidate]:
+    """Every icon of a set, members of families with their shares."""
+    every: list[Candidate] = []
+    for entry in icons.entries:
+        if isinstance(entry, Icon):
+            every.append(Candidate(entry))
+        else:
+            every += [Candidate(icon, entry, _shares(entry, place)) for place, icon in enumerate(entry)]
+    return every
+
+
 def names_of(found: Sequence[Candidate]) -> list[str]:
     """A name for each icon: that of a plain icon as it is, of a member its family's with the values of its parameters.
 
@@ -95,7 +111,7 @@ def names_of(found: Sequence[Candidate]) -> list[str]:
     >>> names_of([candidate_at(read_cue("search-space").families[0], [0.5, 0.33, 0.0, 0.9])])
     ['dip-3p5K-1p66Kps-0p5s-2x']
     """
-    taken = [each.icon.name for each in found if each.family is None]
+    taken = {each.icon.name for each in found if each.family is None}
     names = []
     for each in found:
         name = each.icon.name
@@ -108,54 +124,38 @@ def names_of(found: Sequence[Candidate]) -> list[str]:
             again = 2
             while name in taken:
                 name, again = f"{name.removesuffix(f'-{again - 1}')}-{again}", again + 1
-            taken.append(name)
+            taken.add(name)
         names.append(name)
     return names
 
 
-def found_set(icons: IconSet, found: Sequence[Candidate], seed: int) -> IconSet:
-    """The set that was searched with the found icons in place of its families; site, author and licence stay.
+def set_of_run(icons: IconSet, found: Sequence[Candidate], rig: Rig, made: str, *tags: str) -> IconSet:
+    """Icons that were found in a set, as a set of their own for the site, the baseline and the rig they were judged on.
 
-    Tags of a member say the search and its values.
-    """
-    made = []
-    for each, name in zip(found, names_of(found), strict=True):
-        icon = each.icon
-        if each.family is not None:
-            tags = (*icon.metadata.tags, FOUND, f"seed {seed}", f"from {icon.name.replace('_', ' ')}")
-            icon = Icon(name, _unrepeated(icon.statements), icon.context, replace(icon.metadata, tags=tags))
-        made.append(icon)
-    name = f"{icons.name}-found" if icons.name else ""
-    title = f"{icons.title}, found by search" if icons.title else "Found by search"
-    return IconSet(name, title, icons.context, icons.metadata, tuple(made))
+    `made`, such as "best", says in its name what it is. Members of families become icons, with tags of their values.
+    Its author and licence are for its author to state; an icon that stays as it was keeps its own.
 
-
-def chosen_set(icons: IconSet, names: Sequence[str], site: str) -> IconSet:
-    """The chosen icons as a set, for this site unless it has one: members of families get numbers, and tags say which
-    they were.
-
+    >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
-    >>> six = read_cue("six-icons")
-    >>> [icon.name for icon in chosen_set(six, ["cooling-step", "warming-step"], "thenar")]
-    ['cooling-step', 'warming-step']
     >>> pool = read_cue("search-space")
-    >>> [icon.name for icon in chosen_set(pool, [icon.name for icon in pool][:2], "thenar")]
-    ['dip-1', 'dip-2']
+    >>> best = set_of_run(pool, members_of(pool)[:2], Rig.load("forearm"), "best")
+    >>> [icon.name for icon in best], best.context.site, best.metadata.tags
+    (['dip-1K-1Kps-0p5s-1x', 'dip-1K-1Kps-0p5s-2x'], 'forearm', ('rig forearm',))
     """
-    counts: dict[str, int] = {}
-    context = replace(icons.context, site=icons.context.site or site)
-    made = []
-    for name in names:
-        icon = replace(icons[name], context=context)
-        family = next((each.name for each in icons.families if name.startswith(f"{each.name}_")), None)
-        if family is not None:
-            counts[family] = counts.get(family, 0) + 1
-            tags = (*icon.metadata.tags, f"from {name.replace('_', ' ')}")
-            spoken = f"{family}-{counts[family]}"
-            icon = Icon(spoken, _unrepeated(icon.statements), context, replace(icon.metadata, tags=tags))
-        made.append(icon)
-    title = f"{icons.title}: the best {len(made)}" if icons.title else f"The best {len(made)}"
-    return IconSet(f"{icons.name}-best" if icons.name else "", title, context, icons.metadata, tuple(made))
+    baseline = rig.skin.rest_C if icons.context.baseline_C is None else icons.context.baseline_C
+    context = replace(icons.context, site=rig.site, baseline_C=baseline)
+    entries = []
+    for each, name in zip(found, names_of(found), strict=True):
+        icon, facts = replace(each.icon, context=context), each.icon.metadata
+        if each.family is not None:
+            told = (*facts.tags, *tags, f"from {icon.name.replace('_', ' ')}")
+            icon = Icon(name, _unrepeated(icon.statements), context, Metadata(facts.means, tags=told))
+        entries.append(icon)
+    title = f"{icons.title}: {made}" if icons.title else made.capitalize()
+    of = tuple(each.replace(",", ";") for each in (f"rig {rig.name}", *rig.changes))
+    return IconSet(
+        f"{icons.name}-{made.split()[0]}" if icons.name else "", title, context, Metadata(tags=of), tuple(entries)
+    )
 
 
 def at_ends(found: Sequence[Candidate]) -> tuple[str, ...]:

@@ -7,8 +7,8 @@ chosen icons are then evaluated again at their own range.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,7 @@ from ..ranking.batches import FeltResult, Job
 from ..ranking.ranking import Ranking
 from .appraise import REACHED_BY, Appraisal, appraise, nearest_two
 from .goal import Goal
+from .max_min_subset import SubsetChoice
 from .pool import Pool
 from .request import ChoiceError, Objective, Selection, check_selection
 from .subset_identification import PEOPLE, RESTARTS, SubsetIdentification, pick
@@ -110,7 +111,12 @@ class Choice:
 
 @checked
 def choose(
-    ranking: Ranking, asked: Selection, *, parameters: int | None = None, progress: Progress | None = None
+    ranking: Ranking,
+    asked: Selection,
+    *,
+    goal: Goal | None = None,
+    parameters: int | None = None,
+    progress: Progress | None = None,
 ) -> Choice:
     """Choose the best few icons of a set that was ranked.
 
@@ -120,6 +126,8 @@ def choose(
         The pool, as people identify it. It needs no intervals of its own: the draws are spent on the chosen.
     asked
         The request.
+    goal
+        What is wanted of the chosen, as in `frontier`.
     parameters
         Draws from the posterior, for what a new laboratory will find with the chosen, as in `rank`.
     progress
@@ -147,7 +155,9 @@ def choose(
     2
     """
     draws = ranking.model.draw_count(parameters, DRAWS)
-    chooser = Chooser(ranking.job, ranking.model, asked, left=ranking.carry_over)
+    if goal is not None:
+        goal.check_draws(draws)
+    chooser = Chooser(ranking.job, ranking.model, asked, goal, ranking.carry_over)
     chooser.feel(ranking.felt)
     found = chooser.best(asked.count, draws, step_counter(progress, 1 + draws))
     if found is None:
@@ -159,7 +169,8 @@ class Chooser:
     """The icons of a pool that can be chosen by a request, and who is named what among them, for any number.
 
     The pool is that of a job, as its people feel it; of fewer people, it is chosen and judged by these. A goal leaves
-    icons out that miss what it asks of single ones. Raises `ChoiceError` where too few are left.
+    icons out that miss what it asks of single ones, and the choice has the largest margin of its other parts. Raises
+    `ChoiceError` where too few are left.
     """
 
     def __init__(
@@ -180,29 +191,55 @@ class Chooser:
         self.crowd = Crowd(people, self.job.seed, self.job.tracking, self.job.memory, self.model)
         self.people = self.model.people(people, self.job.seed)
         self.namings = None
-        if asked.objective != "worst":
+        parts = () if self.goal is None else self.goal.of_sets
+        if asked.objective != "worst" or parts:
             d, reports = felt.square(felt.pairs[:PEOPLE])[:, self.places][:, :, self.places], felt.reports
-            self.namings = SubsetIdentification.of(
+            namings = SubsetIdentification.of(
                 d, self.people.lapse, reports[:, self.places], self.pool.durations_s, self.job.seed
             )
+            self.namings = replace(namings, middle=self.middle[np.ix_(self.places, self.places)], parts=parts)
 
     def best(self, count: int, draws: int, step: Callable[[], None], restarts: int = RESTARTS) -> Choice | None:
         """The best choice of so many, judged as a set of its own by people and draws; None where none keeps the totals.
 
-        `step` is called once, and after each draw.
+        Where it misses the goal, the next best are judged too, unless there is one restart only. `step` is called once,
+        and after each draw.
         """
-        job, felt, asked, pool, namings = self.job, self.felt, self.asked, self.pool, self.namings
+        from .goal_result import SetOutcome, judge_goal  # which judges choices
+
         middle = self.middle[np.ix_(self.places, self.places)]
-        picked = pick(middle, namings, count, asked.objective, self.must, self.limits, job.seed, restarts)
+        picked = pick(
+            middle, self.namings, count, self.asked.objective, self.must, self.limits, self.job.seed, restarts
+        )
         if picked is None:
             return None
-        chosen = [self.places[k] for k in picked.chosen]
+        first = self._judged(picked, picked.chosen, draws, step)
+        if self.goal is None or not self.goal.of_sets or restarts == 1:
+            return first
+        outcome = SetOutcome.of_pool(self.whole, self.felt)
+        best, margin = first, judge_goal(self.goal, outcome, first).margin
+        for chosen in picked.others if margin < 0.0 else ():
+            other = self._judged(picked, chosen, draws, lambda: None)
+            if (found := judge_goal(self.goal, outcome, other).margin) > margin:
+                best, margin = other, found
+            if margin >= 0.0:
+                break
+        every = margin >= 0.0 or picked.seen <= 1 + len(picked.others)
+        return best if every else replace(best, optimal=False)
+
+    def _judged(self, picked: SubsetChoice, places: Sequence[int], draws: int, step: Callable[[], None]) -> Choice:
+        """One of the choices that were picked, as a set of its own."""
+        job, felt, asked, pool, namings = self.job, self.felt, self.asked, self.pool, self.namings
+        chosen = [self.places[k] for k in places]
         icons, middle = [job.icons[k] for k in chosen], self.middle[np.ix_(chosen, chosen)]
         names = [icon.name for icon in icons]
         a, b = nearest_two(middle)
         task = task_among(job.task, self.left, chosen)
         own = appraise(icons, job.rig, crowd=self.crowd, task=task)
         step()
+        value = picked.value
+        if namings is not None and places != picked.chosen:
+            value = float(namings.values(places, len(places) - 1, places[-1:], asked.objective)[0])
         found = None
         if draws:
             onset_s = felt.detection.onset_s[chosen]
@@ -217,12 +254,12 @@ class Chooser:
         return Choice(
             icons=tuple(names),
             objective=asked.objective,
-            value=picked.value,
+            value=value,
             optimal=picked.optimal,
-            bound=picked.bound,
+            bound=max(picked.bound, value),
             worst_pair=(names[a], names[b]),
-            total_s=math.fsum(pool.durations_s[list(picked.chosen)]),
-            total_J=math.fsum(pool.energies_J[list(picked.chosen)]),
+            total_s=math.fsum(pool.durations_s[list(places)]),
+            total_J=math.fsum(pool.energies_J[list(places)]),
             pool=len(self.places),
             people=len(self.people) if namings is None else len(namings.lapse),
             seen=picked.seen,

@@ -15,6 +15,8 @@ from typing import Any
 from thermicon.icons.model.arguments import InputError, checked
 from thermicon.icons.near_words import did_you_mean
 
+from ..criteria import FELT_FROM
+
 GRAMMAR = r"""
 start: part ("," part)*
 part: WORD COMPARISON NUMBER [UNIT] [people]  -> number
@@ -75,6 +77,7 @@ NEEDS_DRAWS = (
     "posterior: ask for 2 or more, and use an observer that has draws"
 )
 SAFETY = "safety"
+OF_SETS = ("felt_and_named", "named", "bits", "d_prime")
 VERDICTS = ("green", "amber")
 """Green: no finding at all; amber: no hard limit is passed."""
 
@@ -94,6 +97,16 @@ class GoalPart:
     def at_most(self) -> bool:
         """Whether the value may be at most the limit, rather than at least."""
         return self.quantity == SAFETY or QUANTITIES[self.quantity].comparison == "<="
+
+    def margin(self, value: Any) -> Any:
+        """By what share of its limit a value (or an array) is on the right side of it: 0 at the limit, below: missed.
+
+        >>> part = Goal.parse("time <= 10 s").parts[0]
+        >>> part.margin(8.0), part.margin(12.5)
+        (0.2, -0.25)
+        """
+        gap = self.limit - value if self.at_most else value - self.limit
+        return gap / self.limit if self.limit else gap
 
     @property
     def whose(self) -> str:
@@ -174,6 +187,19 @@ class Goal:
         if not limits:
             return None
         return max(limits) if quantity != SAFETY and QUANTITIES[quantity].comparison == ">=" else min(limits)
+
+    @property
+    def of_sets(self) -> tuple[GoalPart, ...]:
+        """Parts that depend on which icons are together, or on single people; the others bind icons and totals."""
+        return tuple(part for part in self.parts if part.quantity in OF_SETS or part.people is not None)
+
+    @property
+    def least_detected(self) -> float | None:
+        """How often each icon must be detected, mean over people, to be chosen; None: the goal does not say."""
+        means = [part.limit for part in self.parts if part.quantity == "detected" and part.people is None]
+        # Half of people may reach a limit that their mean misses.
+        asked = self.of("detected")
+        return max(means) if means else None if asked is None else min(FELT_FROM, asked)
 
     @property
     def totals(self) -> tuple[float | None, float | None]:

@@ -120,6 +120,11 @@ class GoalPartResult:
     binding: str
 
     @property
+    def margin(self) -> float:
+        """By what share of its limit the part is met; below 0: missed."""
+        return -math.inf if self.value is None else float(self.part.margin(self.value))
+
+    @property
     def verdict(self) -> str | None:
         """The colour of safety; None for other parts."""
         return (*VERDICTS, "red")[int(self.value)] if self.part.quantity == SAFETY and self.value is not None else None
@@ -145,6 +150,11 @@ class GoalResult:
     def met(self) -> bool:
         """Whether every part is met."""
         return all(each.met for each in self.parts)
+
+    @property
+    def margin(self) -> float:
+        """The least margin of its parts."""
+        return min(each.margin for each in self.parts)
 
     @property
     def binding(self) -> tuple[str, ...]:

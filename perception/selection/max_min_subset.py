@@ -44,13 +44,14 @@ class Totals:
 class SubsetChoice:
     """Chosen things in ascending order, their value, what no choice exceeds, and how many looks that took.
 
-    Looks are distances that were decided, or choices that were scored.
+    Looks are distances that were decided, or choices that were scored. `others` are the next best, where they are kept.
     """
 
     chosen: tuple[int, ...]
     value: float
     bound: float
     seen: int
+    others: tuple[tuple[int, ...], ...] = ()
 
     @property
     def optimal(self) -> bool:

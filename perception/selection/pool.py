@@ -137,7 +137,7 @@ class Pool:
         """
         green = goal is not None and goal.of(SAFETY) == 0.0
         found = [objection(trace, soft=green) for trace in self.traces]
-        wanted, onset = (None, None) if goal is None else (goal.of("detected"), goal.of("onset"))
+        wanted, onset = (None, None) if goal is None else (goal.least_detected, goal.of("onset"))
         for place, (share, felt_s) in enumerate(zip(detected.tolist(), onset_s.tolist(), strict=True)):
             least = wanted if wanted is not None else 0.0 if self.icons[place].name in must else FELT_FROM
             if found[place] is not None:

@@ -25,7 +25,7 @@ from ..kernels.parallel import Progress
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..ranking.rank import rank
 from .appraise import Appraisal, appraise
-from .candidates import Candidate, at_ends, found_set, names_of
+from .candidates import FOUND, Candidate, at_ends, names_of, set_of_run
 from .goal import Goal, GoalPart, word_of
 from .request import Objective
 from .search_run import PEOPLE, Evaluator, SearchRun
@@ -37,8 +37,6 @@ PER_ROUND = 3
 """Each round tries 16 variants per icon on the nominal person; a third as many rounds try 4 on a few people."""
 WIDEST, REFINED = 0.25, 0.05
 """First steps of both climbs, as shares of the range of a parameter."""
-JUDGED = ("felt_and_named", "named", "bits", "d_prime")
-"""Quantities that sets are chosen by for their people's mean; `detected` only for a share of people."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,8 +113,9 @@ def search(
         Number of icons that are evaluated for the nominal person.
     goal
         What is wanted of the set: its `count`, `time` and `energy` are kept, and icons left out that miss its
-        `safety`, `detected` or `onset`, the last for the nominal person. Of the sets held at the end, the one nearest
-        to its other parts is the result. `rank` says whether the result meets it.
+        `safety`, `detected` or `onset`, at first for the nominal person, then for people. What is maximised is the
+        least margin of its other parts, of means until the sets held at the end are judged by all people. `rank` says
+        whether the result meets it.
     parameters
         Draws from the posterior, as in `rank`, for a goal for a share of people (None: 128, or as many as there are).
     progress
@@ -162,15 +161,23 @@ def search(
     if wanted is not None:
         wanted.check_draws(draws)
         # Those for a share of people first.
-        judged = [part for part in wanted.parts if part.quantity in JUDGED or part.people is not None]
+        judged = [part for part in wanted.parts if part in wanted.of_sets or part.quantity == "detected"]
         parts = sorted(judged, key=lambda part: (part.people is None, -(part.people or 0.0)))
     rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
+
+    def as_set(of: list[Candidate]) -> IconSet:
+        return set_of_run(icons, of, rig, FOUND, FOUND, f"seed {seed}")
+
+    def as_written(scores: Appraisal, of: list[Candidate]) -> Appraisal:
+        names = dict(zip((candidate.icon.name for candidate in of), names_of(of), strict=True))
+        a, b = scores.worst_pair
+        return replace(scores, worst_pair=(names[a], names[b]))
 
     def tell(tried: int, held: list[Candidate]) -> None:
         if progress is not None:
             progress(min(tried, evaluations), evaluations)
         if best_so_far is not None:
-            best_so_far(found_set(icons, held, seed))
+            best_so_far(as_set(held))
 
     start = run.start(few, rng)  # as a choice would
     tell(run.tried, start)
@@ -189,13 +196,11 @@ def search(
         persons = [one.new_laboratory.persons for one in ranked if one.new_laboratory is not None]
     place = max(range(len(sets)), key=lambda k: _merit(parts, objective, scores[k], persons[k]))
     best, after = finalists[place], scores[place]
-    names = dict(zip((candidate.icon.name for candidate in best), names_of(best), strict=True))
-    a, b = after.worst_pair
     return SearchResult(
-        found=found_set(icons, best, seed),
-        start=tuple(candidate.icon for candidate in start),
-        before=scores[0],
-        after=replace(after, worst_pair=(names[a], names[b])),
+        found=as_set(best),
+        start=tuple(as_set(start)),
+        before=as_written(scores[0], start),
+        after=as_written(after, best),
         objective=objective,
         seed=seed,
         evaluations=screened,
@@ -209,13 +214,14 @@ def search(
 def _merit(
     parts: Sequence[GoalPart], objective: Objective, scores: Appraisal, persons: dict[str, Array]
 ) -> tuple[float, ...]:
-    """The order of sets: nearness to the goal, then values of its parts, then of the objective.
+    """The order of sets: the least margin of the goal, then values of its parts, then of the objective.
 
     `persons` are values of single people of all draws, as in `rank`, for parts about a share of people.
     """
     means = {
         "felt_and_named": scores.felt_and_named,
         "named": scores.proportion_correct,
+        "detected": float(scores.detected.min()),
         "bits": scores.information_bits,
         "d_prime": scores.d_prime,
     }
@@ -223,5 +229,5 @@ def _merit(
         means[part.quantity] if part.people is None else float(np.quantile(persons[part.quantity], 1.0 - part.people))
         for part in parts
     ]
-    missing = [max(0.0, 1.0 - value / part.limit) for part, value in zip(parts, values, strict=True)]
-    return (-max(missing, default=0.0), *values, scores.value(objective))
+    margins = [float(part.margin(value)) for part, value in zip(parts, values, strict=True)]
+    return (min(margins, default=0.0), *values, scores.value(objective))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,8 +16,9 @@ from ..identification.population import ReceptorTemperatures, memory_dprime, res
 from ..identification.task import USUAL
 from ..observer.observer import MemoryForm, Observer
 from ..observer.people import People
+from ..sensation.detection import pooled
 from .candidates import Candidate, sample_candidates
-from .goal import Goal
+from .goal import Goal, GoalPart
 from .max_min_subset import max_min_subset, nearest_pair
 from .pool import POOL_HZ, Pool
 from .request import ChoiceError, Objective
@@ -48,34 +49,46 @@ class Evaluator:
     crowd: People | None = None
 
     @property
+    def parts(self) -> tuple[GoalPart, ...]:
+        """What sets are chosen by, rather than by the objective alone."""
+        return () if self.goal is None else self.goal.of_sets
+
+    @property
     def totals(self) -> tuple[float | None, float | None]:
         """Most time, s, and energy, J, of all icons together."""
         return (None, None) if self.goal is None else self.goal.totals
 
-    def felt(self, candidates: Sequence[Candidate]) -> tuple[Pool, Array, Array]:
-        """The candidates on the nominal rig, their d′ (people, icons, icons) from memory, and how often each person
-        reports them, (people, icons).
+    def felt(self, candidates: Sequence[Candidate]) -> tuple[Pool, Array, Array, Array]:
+        """The candidates on the nominal rig, their d′ (people, icons, icons) from memory, how often each person
+        reports them, (people, icons), and when people do, in s (icons,), where the goal has an onset.
         """
         pool = Pool.of([candidate.icon for candidate in candidates], self.rig, self.observer)
         if self.crowd is None:
-            return pool, pool.dprimes(pool, self.memory, self.observer)[None], pool.felt_by(self.observer)[0][None]
+            reports, onset_s = pool.felt_by(self.observer)
+            return pool, pool.dprimes(pool, self.memory, self.observer)[None], reports[None], onset_s
         how = self.rig, self.observer, pool.end_s, POOL_HZ, self.tracking
         met = ReceptorTemperatures.simulated(pool.icons, self.crowd, *how)
-        felt = respond(met, self.crowd, self.observer)
-        apart = memory_dprime(felt, self.memory, self.crowd.memory, self.observer, USUAL)
-        return pool, apart, felt.detected.probability
+        timed = self.goal is not None and self.goal.of("onset") is not None
+        felt = respond(met, self.crowd, self.observer, times=timed)
+        apart, found = memory_dprime(felt, self.memory, self.crowd.memory, self.observer, USUAL), felt.detected
+        onset_s = np.zeros(len(pool))
+        if timed:
+            onset_s = pooled(found.probability, found.cold_share, found.reported_sum()[0], found.dt_s).onset_s
+        return pool, apart, found.probability, onset_s
 
-    def namings(self, d_prime: Array, reports: Array, pool: Pool) -> SubsetIdentification:
-        """The namings of every person, for the objectives that count errors."""
+    def namings(self, d_prime: Array, reports: Array, pool: Pool, middle: Array) -> SubsetIdentification:
+        """The namings of every person, for goals and the objectives that count errors."""
         lapse = np.array([self.observer.lapse]) if self.crowd is None else self.crowd.lapse
-        return SubsetIdentification.of(d_prime, lapse, reports, pool.durations_s, self.seed)
+        found = SubsetIdentification.of(d_prime, lapse, reports, pool.durations_s, self.seed)
+        return replace(found, middle=middle, parts=self.parts)
 
     def score(self, candidates: Sequence[Candidate]) -> float:
-        """The objective of a whole set."""
-        pool, d, reports = self.felt(candidates)
-        if self.objective == "worst":
-            return nearest_pair(np.median(d, axis=0), range(len(pool)))
-        return self.namings(d, reports, pool).score(range(len(pool)), self.objective)
+        """The objective of a whole set, or its margin of the goal."""
+        pool, d, reports, _ = self.felt(candidates)
+        middle = np.median(d, axis=0)
+        if self.objective == "worst" and not self.parts:
+            return nearest_pair(middle, range(len(pool)))
+        return self.namings(d, reports, pool, middle).score(range(len(pool)), self.objective)
 
 
 class SearchRun:
@@ -129,8 +142,8 @@ class SearchRun:
         Where each family gives one icon, its members are `ALIKE` in the median.
         """
         self.tried += len(candidates)
-        pool, d, reports = judge.felt(candidates)
-        good = self._good(pool, reports, judge)
+        pool, d, reports, onset_s = judge.felt(candidates)
+        good = self._good(pool, reports, onset_s, judge)
         if len(good) < self.count:
             return None
         left, d, pool, reports = (
@@ -147,21 +160,21 @@ class SearchRun:
         if first is None or nearest_pair(middle, first.chosen) <= ALIKE:
             return None
         chosen = list(first.chosen)
-        if judge.objective != "worst":
-            begin = chosen if held is None else range(self.count)
-            chosen = climb(judge.namings(d, reports, pool), begin, judge.objective, middle, self.must, limits)[0]
+        if judge.objective != "worst" or judge.parts:
+            begin, namings = chosen if held is None else range(self.count), judge.namings(d, reports, pool, middle)
+            chosen = climb(namings, begin, judge.objective, middle, self.must, limits)[0]
         return [left[k] for k in sorted(chosen, key=lambda k: (k not in self.must, family[k], k))]
 
-    def _good(self, pool: Pool, reports: Array, judge: Evaluator) -> list[int]:
-        reasons = pool.objections(judge.goal, reports.mean(axis=0), pool.felt_by(judge.observer)[1])
+    def _good(self, pool: Pool, reports: Array, onset_s: Array, judge: Evaluator) -> list[int]:
+        reasons = pool.objections(judge.goal, reports.mean(axis=0), onset_s)
         return [k for k, reason in enumerate(reasons) if k in self.must or reason is None]
 
     def _nothing(self, judge: Evaluator, candidates: list[Candidate]) -> str:
         """Why no set of the first pool can be chosen."""
-        pool, _, reports = judge.felt(candidates)
-        objections = pool.objections(judge.goal, reports.mean(axis=0), pool.felt_by(judge.observer)[1])
+        pool, _, reports, onset_s = judge.felt(candidates)
+        objections = pool.objections(judge.goal, reports.mean(axis=0), onset_s)
         bad = [reason for reason in objections if reason is not None]
-        left = pool.some(self._good(pool, reports, judge))
+        left = pool.some(self._good(pool, reports, onset_s, judge))
         first = f", the first of which {bad[0]}" if bad else ""
         over = f"; the totals: {left.totals_text(self.count, *judge.totals)}" if any(judge.totals) else ""
         return (

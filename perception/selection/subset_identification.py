@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import combinations
 from typing import Any
 
@@ -20,6 +20,7 @@ from thermicon.circuit.cores import quiet_blas
 
 from ..arrays import Array
 from ..identification.confusion import embed
+from .goal import GoalPart
 from .max_min_subset import SubsetChoice, Totals, max_min_subset
 from .request import Objective
 
@@ -34,6 +35,10 @@ LEAST_GAIN = 1e-9
 """A swap that gains no more is rounding."""
 RESTARTS = 6
 """Random choices that larger pools are also climbed from."""
+SHORT = 8
+"""Best choices that are kept, to be judged by all people where a goal is set."""
+TIE = 1e-3
+"""Of an objective beside margins, so that it decides between equal ones, and of d′ beside the objective."""
 
 
 def _tally(counts: Any, size: int, draws: int, lapse: float) -> tuple[float, float]:
@@ -156,7 +161,7 @@ right: Callable[[Array, Array, Array, Array, Any, int, Any], Array] = _compile(_
 class SubsetIdentification:
     """A pool as some people feel it: `half` (people, n, n) half squared distances, `push` (people, n, draws) noise
     projected on the points, `lapse` (people,), `reports` (people, n) how often icons are reported, `durations_s` (n,).
-    A subset scores the mean of its people.
+    A subset scores the mean of its people; with `parts` of a goal, the least margin of their means, d′ from `middle`.
     """
 
     half: Array
@@ -164,6 +169,8 @@ class SubsetIdentification:
     lapse: Array
     reports: Array
     durations_s: Array
+    middle: Array = field(default_factory=lambda: np.empty((0, 0)))
+    parts: tuple[GoalPart, ...] = ()
 
     @classmethod
     def of(
@@ -183,12 +190,28 @@ class SubsetIdentification:
         return int(self.half.shape[1])
 
     def score(self, chosen: Sequence[int], objective: Objective) -> float:
-        """Felt and named, named, bits, or bits a second of the chosen: mean over people."""
+        """The objective of the chosen, mean over people, or their least margin."""
         # The last is "replaced" by itself; of equally near ones it wins no more often than where it stands.
         return float(self.replaced(chosen, len(chosen) - 1, chosen[-1:], objective)[0])
 
     def replaced(self, chosen: Sequence[int], place: int, others: Sequence[int], objective: Objective) -> Array:
         """Scores (others,) of the chosen with the one at a place replaced by each of `others`."""
+        own = self.values(chosen, place, others, objective)
+        if not self.parts:
+            return own
+        apart = [part.margin(self.values(chosen, place, others, _meant(part.quantity))) for part in self.parts]
+        nearest = self.values(chosen, place, others, "worst")
+        return np.asarray(np.min(apart, axis=0) + TIE * own + TIE**2 * nearest)
+
+    def values(self, chosen: Sequence[int], place: int, others: Sequence[int], objective: str) -> Array:
+        """The same of an objective alone, or of `detected`, how often the icon detected least is reported."""
+        if objective in ("worst", "detected"):
+            rest = [k for spot, k in enumerate(chosen) if spot != place]
+            if objective == "detected":
+                each = np.minimum(self.reports[:, rest].min(axis=1)[:, None], self.reports[:, list(others)])
+                return np.asarray(each.mean(axis=0))
+            inside = self.middle[np.ix_(rest, rest)][np.triu_indices(len(rest), 1)]
+            return np.asarray(np.minimum(self.middle[np.ix_(rest, others)].min(axis=0), inside.min(initial=math.inf)))
         index, tried = np.asarray(chosen, dtype=np.int64), np.asarray(others, dtype=np.int64)
         of, trial = (self.half, self.push, self.lapse), (index, place, tried)
         if objective in ("felt-and-named", "named"):
@@ -221,7 +244,8 @@ class SubsetIdentification:
         rest = [k for k in range(len(self)) if k not in must]
         missing = count - len(must)
         heads = [tuple(must[:-1])] if not missing else [(*must, *some) for some in combinations(rest, missing - 1)]
-        best, value, seen = None, -math.inf, 0
+        best, seen = list[tuple[float, tuple[int, ...]]](), 0
+        keep = SHORT if self.parts else 1
         for head in heads:
             last = [k for k in rest if missing == 1 or k > head[-1]] if missing else must[-1:]
             last = [k for k in last if limits.kept([*head, k])]
@@ -229,12 +253,12 @@ class SubsetIdentification:
                 continue
             scores = self.replaced([*head, last[0]], count - 1, last, objective)
             seen += len(last)
-            if scores.max() > value:
-                value = float(scores.max())
-                best = tuple(sorted((*head, last[int(scores.argmax())])))
-        if best is None:
-            return None
-        return SubsetChoice(best, own := self.score(best, objective), own, seen)
+            least = best[-1][0] if len(best) == keep else -math.inf
+            if scores.max() > least:
+                first = np.argsort(-scores, kind="stable")[:keep].tolist()
+                best += [(float(scores[k]), tuple(sorted((*head, last[k])))) for k in first]
+                best = sorted(best, key=lambda each: -each[0])[:keep]
+        return _told(self, best, objective, None, seen) if best else None
 
 
 def pick(
@@ -249,7 +273,7 @@ def pick(
 ) -> SubsetChoice | None:
     """The best `count` by one objective: of median d′ (n, n) for `worst`, else of the namings; None: no choice fits."""
     within = limits or Totals.none(len(middle))
-    if namings is None or objective == "worst":
+    if namings is None or (objective == "worst" and not namings.parts):
         return max_min_subset(middle, count, must, within)
     if math.comb(len(middle) - len(must), count - len(must)) <= MOST_SUBSETS:
         return namings.enumerated(count, objective, must, within)
@@ -275,14 +299,30 @@ def _climbed(
     drawn = [
         (*must, *sorted(int(k) for k in rng.choice(others, count - len(must), replace=False))) for _ in range(restarts)
     ]
-    best, value, seen = widest.chosen, -math.inf, 0
+    best, seen = dict[tuple[int, ...], float](), 0
     for start in [widest.chosen, *(one for one in drawn if limits.kept(one))]:
-        chosen, score, looked = climb(namings, start, objective, middle, must, limits)
+        chosen, score, looked = climb(namings, start, objective, middle, must, limits, best)
         seen += looked
-        if score > value + 1e-12:
-            best = tuple(sorted(chosen))
-            value = namings.score(best, objective)
-    return SubsetChoice(best, value, max(ceiling(namings, count, objective), value), seen)
+        best[tuple(sorted(chosen))] = score
+    # Of equal ones the first; sums in another order differ by rounding.
+    ranked = sorted(((round(score, 11), one) for one, score in best.items()), key=lambda each: -each[0])
+    bound = widest.bound if objective == "worst" else ceiling(namings, count, objective)
+    return _told(namings, ranked[: SHORT if namings.parts else 1], objective, bound, seen)
+
+
+def _meant(quantity: str) -> str:
+    """The objective that a quantity of a goal is."""
+    return {"d_prime": "worst"}.get(quantity, quantity.replace("_", "-"))
+
+
+def _told(
+    namings: SubsetIdentification, ranked: Sequence[tuple[float, tuple[int, ...]]], objective: Objective,
+    bound: float | None, seen: int,
+) -> SubsetChoice:  # fmt: skip
+    """The first of the ranked choices with its objective, and the others; without a bound all were looked at."""
+    best, *others = (chosen for _, chosen in ranked)
+    value = float(namings.values(best, len(best) - 1, best[-1:], objective)[0])
+    return SubsetChoice(best, value, value if bound is None else max(bound, value), seen, tuple(others))
 
 
 def ceiling(namings: SubsetIdentification, count: int, objective: Objective) -> float:
@@ -303,8 +343,12 @@ def climb(
     middle: Array,
     must: Sequence[int],
     limits: Totals,
+    near: dict[tuple[int, ...], float] | None = None,
 ) -> tuple[list[int], float, int]:
-    """Single swaps that improve an objective until none does: the places, their score, and how many were tried."""
+    """Single swaps that improve an objective until none does: the places, their score, and how many were tried.
+
+    With parts of a goal, `near` takes the best swaps of the last round.
+    """
     chosen, score, tried = list(start), namings.score(start, objective), 0
     while True:
         # Not one that must stay, none for one that is alike another of the chosen, and within limits.
@@ -319,5 +363,10 @@ def climb(
         tried += int(allowed.sum())
         place, other = (int(k) for k in np.unravel_index(int(found.argmax()), found.shape))
         if not found[place, other] > score + LEAST_GAIN:
+            for spot in np.argsort(-found, axis=None)[: SHORT if namings.parts and near is not None else 0].tolist():
+                place, other = divmod(spot, found.shape[1])
+                if near is not None and math.isfinite(found[place, other]):
+                    swapped = sorted((*chosen[:place], *chosen[place + 1 :], other))
+                    near.setdefault(tuple(swapped), float(found[place, other]))
             return chosen, score, tried
         score, chosen[place] = float(found[place, other]), other

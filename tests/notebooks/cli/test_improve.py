@@ -113,6 +113,55 @@ def test_what_is_written_is_said_to_miss_the_goal_and_to_replace(cli: Cli, two: 
     assert cli.good(*asked, "bits >= 0.01").stderr.endswith(f"wrote {out} (replaced what was there)\n")
 
 
+@pytest.mark.parametrize("way", [("--choose", 3), ("--up-to", 3), ("--evaluations", 20)], ids=lambda way: way[0])
+def test_what_is_written_belongs_to_the_run_and_is_called_alike_on_screen(
+    cli: Cli, tmp_path: Path, way: tuple[object, ...]
+) -> None:
+    source, out = tmp_path / "source.cue", tmp_path / "out.cue"
+    source.write_text(
+        'cue 1\nset pool { site thenar; control display; by "A. Uthor"; licence "MIT" }\n'
+        'icon own by "B. Elle" { warm by 4 °C at 1 °C/s; return at 1 °C/s }\n'
+        'icon dip(depth in 4..6 step 2 °C) by "A. Uthor" { cool by depth at 3 °C/s; return at 3 °C/s }\n'
+        'icon rise(height in 4..5 step 1 °C) by "A. Uthor" { warm by height at 3 °C/s; return at 2 °C/s }\n',
+        encoding="utf-8",
+    )
+    on = ("--rig", "forearm", "--set", "contact.area_cm2=6", "--people", 6, "--intervals", 0)
+    said = cli.good("improve", source, *way, *on, "-o", out)
+    made, words = parse(out.read_text(encoding="utf-8")), " ".join(said.stdout.split())
+    rests_C = 32.0
+    assert (made.context.site, made.context.baseline_C, made.metadata.tags) == (
+        "forearm", rests_C, ("rig forearm", "contact.area_cm2=6"))  # fmt: skip
+    assert (made.metadata.by, made.metadata.licence) == (None, None)
+    assert {icon.metadata.by for icon in made} <= {None, "B. Elle"}
+    assert all(icon.name in words for icon in made) and "_depth=" not in words
+    assert "warning" not in cli.good("rank", out, *on).stderr
+
+
+def test_an_icon_that_must_stay_may_be_called_as_a_member_or_as_it_is_written(cli: Cli, families: Path) -> None:
+    for name in ("dip_depth=4", "dip-4K"):
+        said = cli.good("improve", families, "--choose", 2, "--must", name, *FEW)
+        assert "dip-4K" in said.stdout
+
+
+def test_the_table_stands_before_a_set_is_refused(cli: Cli, tmp_path: Path) -> None:
+    out, table = tmp_path / "out.cue", tmp_path / "out.csv"
+    asked = ("improve", "six-icons", "--people", 4, "--up-to", 3, "--intervals", 4, "-o", out, "-o", table)
+    said = cli(*asked, "--goal", "named >= 99.9 %")
+    words = " ".join(said.stdout.split())
+    assert said.exit_code and not out.exists() and len(pd.read_csv(table)) == 2
+    assert "met by none of these choices" in words and "no choice that was looked at meets the goal" in words
+    assert "no choice meets the goal, and no set was written" in said.stderr
+
+
+@pytest.mark.slow
+def test_a_choice_of_a_large_space_meets_what_icons_of_it_meet(cli: Cli, tmp_path: Path) -> None:
+    out, few = tmp_path / "out.cue", ("--people", 40, "--intervals", 32)
+    goal = ("--goal", "85 % felt-and-named for 90 % of people, detected >= 90 %")
+    said = cli.good("improve", "search-space", "--up-to", 4, *few, *goal, "-o", out)
+    assert "Goal: met by the best 4" in said.stdout
+    assert "Goal: met" in cli.good("rank", out, *few, *goal).stdout
+
+
 def test_a_row_for_each_number_of_icons(cli: Cli, tmp_path: Path) -> None:
     out, picture = tmp_path / "out.csv", tmp_path / "out.png"
     asked = ("improve", "six-icons", "--people", 4, "--up-to", 4, "--intervals", 4)

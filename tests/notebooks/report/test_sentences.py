@@ -23,7 +23,7 @@ from thermicon.perception.selection.request import Objective
 
 
 def chosen(objective: Objective, seen: int, people: int) -> Choice:
-    pair, own = ("a", "b"), Appraisal(("a", "b"), 3.0, 0.88, 0.9, 1.0, 0.1, 0.7, 0.8, np.ones(2), np.eye(2))
+    pair, own = ("a", "b"), Appraisal(("a", "b"), 3.0, 0.88, 0.9, 1.0, 0.1, 0.7, 0.8, np.ones(2), np.ones(2), np.eye(2))
     return Choice(pair, objective, 3.0, True, 3.0, pair, 9.0, 12.0, 2, people, seen, (), own)
 
 
