@@ -48,8 +48,8 @@ def pilot_command(
         list[Path] | None,
         out(
             "TRIALS.csv",
-            "Sharpen the prediction by answers: columns participant, trial, presented, responded. Or by measurements: "
-            "participant, kind (threshold, reaction_time, rating), method, channel, size_K, value, unit, "
+            "Sharpen the prediction by answers: columns participant, trial, presented, responded (none: not felt). Or by "
+            "measurements: participant, kind (threshold, reaction_time, rating), method, channel, size_K, value, unit, "
             "standard_error, trials.",
             "--answers",
             "--measurements",
@@ -92,7 +92,7 @@ def pilot_command(
     """Plan an identification experiment, or compare its answers with the prediction and sharpen it by them.
 
     Without answers, whole experiments are simulated in laboratories that the evidence allows: how many participants and
-    trials give the wanted interval of FILE's per cent correct, or distinguish two sets. With
+    trials give the wanted interval of FILE's per cent named, or distinguish two sets. With
     answers, FILE is the set that was presented; further ones are predicted for the laboratory too. A laboratory is one
     draw of the posterior with people of its own: those that make the answers likely count more. With the JSON of a
     ranking beside its FILES, that prediction is scored on the answers as it was sealed.

@@ -67,11 +67,10 @@ def opened_reports(found: SealedScores) -> str:
             f"{found.unanswered} plays were not felt. The sealed file is of before felt and named was predicted: it is "
             "read on named alone, of which they are no part."
         )
-    seen, said, chance = found.felt_and_named
+    seen, said, p = found.felt_and_named
     return (
-        f"Felt and named: {percent(seen)} of {found.trials + found.unanswered} plays; it says {percent(said)}, "
-        f"{'within' if abs(seen - said) <= 2.0 * chance else 'beyond'} what chance leaves "
-        f"(±{200.0 * chance:.0f} points in independent trials)."
+        f"Felt and named: {percent(seen)} of {found.trials + found.unanswered} plays; it says {percent(said)}. Its "
+        f"icons are {'not what' if p < POOR else 'what'} it says: p = {p_text(p)} in independent trials."
     )
 
 

@@ -219,8 +219,8 @@ def compare(trials: Trials, played: Confusions, *, seed: int = 0) -> Fit:
     answered = trials.counts.sum(axis=(1, 2)).clip(1.0)
     spread = [(np.trace(one, axis1=1, axis2=2) / answered).std() for one in (trials.counts, *each)]
     return Fit(
-        p=_share(off),
-        p_people=_share(spread) if len(trials.participants) >= LEAST_PEOPLE else None,
+        p=share_as_far(off),
+        p_people=share_as_far(spread) if len(trials.participants) >= LEAST_PEOPLE else None,
         proportion_correct=median_three(np.trace(pooled, axis1=1, axis2=2) / seen.sum()),
         information_bits_plugin=median_three(np.array([plugin_information(one)[0] for one in pooled])),
         pairs=tuple(_pairs(trials, seen, pooled)),
@@ -253,7 +253,7 @@ def compare_reports(trials: Trials, played: Confusions, *, seed: int = 0) -> dic
         observed = float(seen[k] / total[k])
         missed = not low <= observed <= high
         found.append(ReportFit(trials.icons[k], int(total[k]), observed, float(share[k]), (low, high), missed))
-    return {"p_reports": _share(off), "felt_and_named": median_three(alert), "reports": tuple(found)}
+    return {"p_reports": share_as_far(off), "felt_and_named": median_three(alert), "reports": tuple(found)}
 
 
 def _pairs(trials: Trials, seen: Array, pooled: Array) -> list[PairFit]:
@@ -293,9 +293,9 @@ def compare_measurements(measured: Measurements, each: SimulatedMeasurements, *,
         missed = not low <= seen_mean <= high
         count = int(there[:, k].sum())
         found.append(ConditionFit(condition, condition.unit, count, seen_mean, (middle, low, high), missed))
-    return MeasurementFit(_share(off.tolist()), tuple(found))
+    return MeasurementFit(share_as_far(off.tolist()), tuple(found))
 
 
-def _share(values: list[float]) -> float:
+def share_as_far(values: list[float]) -> float:
     """Share of all values, the first among them, that are at least the first."""
     return float(np.mean(np.array(values) >= values[0] - 1e-12))

@@ -22,6 +22,7 @@ from thermicon.icons import IconSet
 from ..arrays import Array
 from ..identification.skin_alone import skin_alone
 from ..ranking.rank import digests_of
+from .prediction import EXPERIMENTS, share_as_far
 from .trials import Trials
 
 WHAT, MOST_MB = "sealed prediction", 200
@@ -52,8 +53,8 @@ class SealedPrediction:
 class SealedScores:
     """Bits a trial and share correct of each score; `chance_bits` is the SD of the prediction's, were it the truth.
 
-    `felt_and_named` is observed, predicted, and the SD of chance; None where nobody could say that nothing was felt, or
-    where the prediction does not have it.
+    `felt_and_named` is observed, predicted, and the p of its icons in independent trials; None where nobody could say
+    that nothing was felt, or where the prediction does not have it.
     """
 
     sealed: SealedPrediction
@@ -118,7 +119,11 @@ def opened(sealed: SealedPrediction, trials: Trials, icons: IconSet, rig: Rig) -
     chance = math.sqrt(float(shown @ spread)) / number
     silent, both = int(trials.unanswered.sum()), None
     if silent and (alert := sealed.felt_and_named) is not None:
-        plays = trials.presented.sum(axis=0) / trials.total
-        spread = math.sqrt(float(plays @ (alert * (1.0 - alert))) / trials.total)
-        both = float(counts.trace() / trials.total), float(plays @ alert), spread
+        plays, chances = trials.presented.sum(axis=0), alert.clip(LEAST, 1.0 - LEAST)
+        hits = np.random.default_rng(0).binomial(plays.astype(np.int64), chances, (EXPERIMENTS, len(own)))
+        shown = plays > 0.0
+        expected = (plays * chances)[shown]
+        off = np.vstack([counts.diagonal(), hits])[:, shown] - expected
+        far = (np.square(off) / (expected * (1.0 - chances[shown]))).sum(axis=1).tolist()
+        both = float(counts.trace() / trials.total), float(plays @ alert / trials.total), share_as_far(far)
     return SealedScores(sealed, int(number), float(counts.trace() / number), scores, chance, silent, both)

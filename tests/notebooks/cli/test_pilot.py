@@ -74,23 +74,47 @@ def test_trials_without_an_answer_and_counts_of_a_group_are_said(cli: Cli, two: 
     path, out = tmp_path / "trials.csv", tmp_path / "out.json"
     rows = [f"ann,{k},warm-step,{'warm-step' if k else 'timeout'}" for k in range(24)]
     path.write_text("\n".join(["participant,trial,presented,responded", "ann,read,,", *rows, "bob,1,warm-step,"]))
-    words = told(cli("pilot", two, "--answers", path, *QUICK, "--json", out), "no answer", "1 rows or trials")
-    assert "all 25 92 %" in words and "2 of 25 trials have no answer" in words
+    words = told(cli("pilot", two, "--answers", path, *QUICK, "--json", out), "not felt", "1 rows or trials")
+    assert "all 25 2 92 % " in words and "2 of 25 trials have no answer, so were not felt" in words
     assert "Observed where they answered: 100 %" in words
     own = json.loads(out.read_text(encoding="utf-8"))
     assert (sum(own["unanswered"]), sum(map(sum, own["counts"])), own["trials"]) == (2, 23, 25)
     assert (own["rows_passed_over"], own["one_group"], own["each"][1]["unanswered"]) == (1, False, 1)
     path.write_text("shown,warm-step,cool-step\nwarm-step,20,4\ncool-step,5,19\n")
     words = told(cli("pilot", two, "--answers", path, *QUICK, "--json", out), "Counts of one group do not show")
-    assert "all 48 81 %" in words and "no answer" not in words
+    assert "all 48 81 %" in words and "Each trial has an answer" in words and "not felt" not in words
     assert json.loads(out.read_text(encoding="utf-8"))["one_group"]
+
+
+def test_eight_of_eight_silences_on_one_icon_are_seen(cli: Cli, two: Path, tmp_path: Path) -> None:
+    path, sealed = tmp_path / "trials.csv", tmp_path / "sealed.json"
+    rows = [f"{who},{k},{icon},{said}" for who in ("ann", "bob") for k in range(8)
+            for icon, said in [("cool-step", "cool-step") if k % 2 else ("warm-step", "none")]]  # fmt: skip
+    path.write_text(
+        "\n".join(["participant,trial,presented,responded", *rows, *(f"cem,{k},cool-step,cool-step" for k in range(8))])
+    )
+    words = told(cli("pilot", two, "--answers", path, *QUICK), "warm-step: 8 of 8 not felt; predicted ")
+    assert "all 24 8 67 % " in words and "the prediction of what is felt missed" in words
+    assert "Icons not felt outside their predicted 95 % (1 of 2): " in words
+    cli.good("rank", two, "--people", 8, "--intervals", 0, "--json", sealed)
+    told(
+        cli("pilot", two, sealed, "--answers", path),
+        "Felt and named: 67 % of 24 plays; it says ",
+        "Its icons are not what it says: p = under 0.01",
+    )
+    held = json.loads(sealed.read_text(encoding="utf-8"))
+    held["icons"] = [{key: icon[key] for key in icon if key != "felt_and_named"} for icon in held["icons"]]
+    sealed.write_text(json.dumps(held), encoding="utf-8")
+    told(cli("pilot", two, sealed, "--answers", path), "8 plays were not felt. ", "it is read on named alone")
 
 
 def test_a_sealed_prediction_is_scored_beside_its_cue_file(cli: Cli, two: Path, answers: Path, tmp_path: Path) -> None:
     sealed, out = tmp_path / "sealed.json", tmp_path / "out.json"
     cli.good("rank", two, "--people", 8, "--intervals", 0, "--json", sealed)
     said = cli("pilot", two, sealed, "--answers", answers, "--json", out)
-    words = told(said, "guessing −1.00 50 %", "19 answers, 95 % correct. The prediction was better than guessing")
+    words = told(
+        said, "guessing −1.00 50 %", "19 answers, 95 % named correctly. The prediction was better than guessing"
+    )
     own = json.loads(out.read_text(encoding="utf-8"))
     assert own["sealed"]["sha256"] in words
     assert [*own["scores"]][2:] == ["skin temperature alone", "best that its matrix allows"]
@@ -103,7 +127,7 @@ def test_a_sealed_prediction_is_scored_beside_its_cue_file(cli: Cli, two: Path, 
 
 
 def test_enough_draws_say_by_how_much_it_narrowed(cli: Cli, two: Path, answers: Path) -> None:
-    words = told(cli("pilot", two, "--answers", answers, "--draws", 200), "95 % bits 95 % narrower")
+    words = told(cli("pilot", two, "--answers", answers, "--draws", 200), "after (95 %) narrower")
     assert "too few to say" not in words
 
 

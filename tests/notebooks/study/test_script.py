@@ -100,13 +100,17 @@ def test_what_is_done_is_not_overwritten_and_is_joined(script: Runner, done: Pat
     assert [row["participant"] for row in joined] == ["A"] * 8 + ["B"] * 8
 
 
-def test_a_trial_without_an_answer_is_a_row_with_an_empty_one(quick: Path, tmp_path: Path) -> None:
+def test_a_trial_without_an_answer_is_a_row_that_says_none_and_reads_back_as_not_felt(
+    quick: Path, tmp_path: Path
+) -> None:
     study = shutil.copytree(quick, tmp_path / "study")
     facts = json.loads((study / "study.json").read_text(encoding="utf-8"))
     (study / "study.json").write_text(json.dumps({**facts, "answer_s": 1.0}), encoding="utf-8")
     ran = run_script(study, tmp_path, "--participant", "A", "--simulate")
     found = answers(tmp_path)
-    silent = sum(not row["responded"] for row in found)
+    silent = sum(row["responded"] == "none" for row in found)
+    said = {row["trial"]: row["response"] for row in events(tmp_path) if row["trial"] != "0"}
+    assert said == {row["trial"]: row["responded"] for row in found}
     assert [int(row["trial"]) for row in found] == list(range(1, 9)) and 0 < silent < 8
     assert f"done; {8 - silent} answers after" in ran.stdout
     assert "nothing to resume" in run_script(study, tmp_path, "--participant", "A", "--simulate", "--resume").stdout

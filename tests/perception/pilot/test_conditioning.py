@@ -31,7 +31,8 @@ class Toy:
         person = np.stack([np.random.default_rng(int(seed)).standard_normal(PEOPLE) for seed in some.seed])
         right = correct_at(some.place[:, :1], person)[:, :, None, None]
         chance = np.where(np.eye(ICONS, dtype=bool), right, (1.0 - right) / (ICONS - 1))
-        return Confusions(("a", "b", "c"), chance.astype(np.float32))
+        felt = np.broadcast_to(np.float32(0.9), chance.shape[:3])
+        return Confusions(("a", "b", "c"), chance.astype(np.float32), felt)
 
 
 def laboratories(n: int, seed: int) -> Laboratories:
@@ -138,3 +139,30 @@ def test_fit_finds_a_pair_that_was_missed_and_nothing_where_all_is_as_predicted(
     assert (fit.missed[0].a, fit.missed[0].b) == ("a", "b")
     assert fit.missed[0].observed == pytest.approx(0.4)
     assert fit.p_people is not None and fit.p_people > 0.9  # nobody differs
+
+
+@pytest.mark.parametrize(("silent", "missed"), [(8.0, True), (1.0, False)])
+def test_an_icon_that_nobody_felt_is_seen_where_each_answer_was_right(silent: float, missed: bool) -> None:
+    played, counts, none = (
+        Toy().confusions(laboratories(300, 8)),
+        10.0 * np.eye(3)[None],
+        np.array([[silent, 1.0, 1.0]]),
+    )
+    counts[0, 0, 0] = 10.0 - silent
+    fit = compare(Trials(("a", "b", "c"), ("P",), counts, unanswered=none), played)
+    assert fit.p_reports is not None and (fit.p_reports < 0.01) == missed
+    assert [each.icon for each in fit.reports if each.missed] == ["a"] * missed
+    assert (fit.reports[0].observed, fit.reports[0].predicted) == (silent / 10.0, pytest.approx(0.1))
+    # What is felt and named was felt and was named: nine of ten plays of what the same prediction has of names.
+    assert fit.felt_and_named is not None
+    assert fit.felt_and_named[0] == pytest.approx(0.9 * fit.proportion_correct[0], abs=0.05)
+
+
+def test_trials_that_all_have_an_answer_say_nothing_of_what_is_felt_and_silence_moves_no_name() -> None:
+    counts, played = answers(0.1, 5, 10, seed=3), Toy().confusions(laboratories(300, 8))
+    forced, free = (Trials(("a", "b", "c"), tuple("PQRST"), counts, unanswered=n * np.ones((5, 3))) for n in (0.0, 2.0))
+    fit, other = compare(forced, played), compare(free, played)
+    assert (fit.p_reports, fit.felt_and_named, fit.reports) == (None, None, ())
+    assert (fit.p, fit.proportion_correct, fit.pairs) == (other.p, other.proportion_correct, other.pairs)
+    likely = [Namings(each, Toy()).log_likelihood(played) for each in (forced, free)]  # type: ignore[arg-type]
+    assert np.array_equal(*likely)

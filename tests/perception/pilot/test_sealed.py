@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -49,6 +50,30 @@ def test_it_reaches_its_best_on_its_own_answers_and_loses_to_guessing_on_guesses
     assert (true.trials, true.scores["prediction"][1]) == (3 * EACH, pytest.approx(sealed.confusion.trace() / 3))
 
 
+def test_a_silence_counts_for_felt_and_named_where_the_sealed_file_has_it(path: Path, rig: Rig) -> None:
+    sealed = read_sealed(path, NEAR, rig)
+    assert sealed.felt_and_named is not None and (sealed.felt_and_named <= sealed.confusion.diagonal() + 1e-12).all()
+    counts, silent = 8.0 * np.eye(3)[None], np.array([[0.0, 0.0, 8.0]])
+    counts[0, 2, 2] = 0.0
+    trials = Trials(sealed.labels, ("all",), counts, unanswered=silent)
+    found = opened(sealed, trials, NEAR, rig)
+    assert found.felt_and_named is not None and found.observed_correct == 1.0
+    seen, said, p = found.felt_and_named
+    assert (seen, said) == (pytest.approx(2 / 3), pytest.approx(sealed.felt_and_named.mean()))
+    assert p < 0.01, "an icon that is never felt is seen, whatever the others make of the mean"
+    counts[0] = np.round(8.0 * np.diag(sealed.felt_and_named))
+    fine = opened(sealed, replace(trials, counts=counts, unanswered=(8.0 - counts[0].sum(axis=1))[None]), NEAR, rig)
+    assert fine.felt_and_named is not None and fine.felt_and_named[2] > 0.2
+    counts = 8.0 * np.eye(3)[None]
+    assert opened(sealed, Trials(sealed.labels, ("all",), counts), NEAR, rig).felt_and_named is None
+    held = json.loads(path.read_text(encoding="utf-8"))
+    for icon in held["icons"]:
+        del icon["felt_and_named"]
+    path.write_text(json.dumps(held), encoding="utf-8")
+    before = opened(read_sealed(path, NEAR, rig), trials, NEAR, rig)
+    assert before.felt_and_named is None and before.scores == found.scores
+
+
 def test_skin_alone_confuses_what_is_alike_at_the_skin(rig: Rig) -> None:
     named = skin_alone(list(NEAR), rig)
     assert named.sum(axis=1) == pytest.approx(1.0)
@@ -62,6 +87,7 @@ CHANGES: dict[str, Callable[[dict[str, Any]], object]] = {
     "earlier": lambda held: held.pop("sha256"),
     "names": lambda held: held["confusion"]["labels"].reverse(),
     "rows": lambda held: held["confusion"]["probability"][0].reverse() or held["confusion"]["probability"].pop(),
+    "alert": lambda held: held["icons"][1].update(felt_and_named=1.2),
     "more": lambda held: held["confusion"]["probability"][1].__setitem__(0, 0.9),
 }
 

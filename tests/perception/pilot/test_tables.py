@@ -82,7 +82,7 @@ def table_of(shape: str, trials: dict[str, list[tuple[str, str]]]) -> list[str]:
     return ["Table 3: confusions", ",".join(["", *said]), *counts]
 
 
-@pytest.mark.parametrize("missing", ["", "n/a", "None", "null", "no answer", "-", "timeout"])
+@pytest.mark.parametrize("missing", ["", "None", "null", "no answer", "-", "timeout"])
 @pytest.mark.parametrize("shape", ["blocks", "restarting", "wide", "instructions", "matrix", "greeting", "stimuli"])
 def test_however_an_experiment_writes_its_trials_their_scores_are_the_same(
     tmp_path: Path, shape: str, missing: str
@@ -112,6 +112,28 @@ def test_an_icon_that_is_misspelt_is_no_instruction_and_per_cents_are_asked_abou
         read_trials(written(tmp_path, "P1,1,wave,wave"), ICONS)
     with pytest.warns(UserWarning, match="sum to 100, read as counts; if they are per cents, write numbers of answers"):
         read_trials(written(tmp_path, "dip,90.0,10", "cool-step,5,95", head=",dip,cool-step"), ICONS)
+
+
+@pytest.mark.parametrize("lost", ["missing", "n/a", "NaN"])
+def test_what_is_missing_is_no_trial_and_a_silence_is_a_miss_of_felt_and_named_alone(tmp_path: Path, lost: str) -> None:
+    rows = ["P1,1,dip,dip", "P1,2,dip,none", f"P1,3,dip,{lost}", "P1,4,dip,cool-step", f"P2,1,dip,{lost}"]
+    found = read_trials(written(tmp_path, *rows), ICONS)
+    assert (found.participants, found.total, found.missing, found.forced) == (("P1",), 3, 2, False)
+    own = score("all", found.counts, found.unanswered.sum(axis=1))
+    assert (own.proportion_correct, own.named) == (pytest.approx(1 / 3), 0.5)
+    forced = read_trials(written(tmp_path, *(row for row in rows if "none" not in row)), ICONS)
+    own = score("all", forced.counts, forced.unanswered.sum(axis=1))
+    assert forced.forced and own.proportion_correct == own.named == 0.5
+    counts = read_trials(
+        written(tmp_path, "dip,3,1,4,2", "cool-step,0,5,0,0", head=f",dip,cool-step,{lost},none"), ICONS
+    )
+    assert (counts.missing, counts.unanswered.sum(), counts.total, counts.grouped) == (4, 2, 11, True)
+
+
+def test_somebody_who_felt_nothing_is_a_participant_without_a_name(tmp_path: Path) -> None:
+    found = read_trials(written(tmp_path, "P1,1,dip,dip", "P2,1,dip,", "P2,2,dip,timeout"), ICONS)
+    own = score("P2", found.counts[1:], found.unanswered[1:].sum(axis=1))
+    assert (own.trials, own.unanswered, own.proportion_correct, own.named) == (2, 2, 0.0, None)
 
 
 def test_an_icon_may_be_called_none(tmp_path: Path) -> None:
