@@ -58,7 +58,7 @@ class DesignView {
   age(late, computing) {
     if (!this.frame) return;
     const { icon, badge, stale } = this.frame;
-    const why = late ? "no answer from the kernel" : computing && !stale ? "being computed" : "";
+    const why = late ? "no answer" : computing && !stale ? "computing …" : "";
     const shown = why ? { colour: "grey", text: `not judged: ${why}`, more: [] } : badge;
     const older = Boolean(why || stale);
     for (const place of [this.root, this.root.closest(".thermicon")]) place?.toggleAttribute("data-older", older);
