@@ -27,7 +27,7 @@ WATCH = """() => {
 }"""
 DONE_TO_THE_KERNEL = {
     "computing": "() => {}",
-    "busy": f"() => {{ {KERNEL}.requestExecute({{ code: 'import time; time.sleep(15)' }}); }}",
+    "busy": f"() => {{ {KERNEL}.requestExecute({{ code: 'import ctypes; ctypes.PyDLL(None).sleep(10)' }}); }}",
     "killed": f"() => {{ {KERNEL}.requestExecute({{ code: 'import os; os.kill(os.getpid(), 9)' }}); }}",
     "cut": "() => { WebSocket.prototype.send = () => {}; }",
 }
