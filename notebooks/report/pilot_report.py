@@ -284,7 +284,7 @@ def reports(found: Observed[Namings, Fit]) -> list[Block]:
         f"before, {p_text(found.fit_after.p_reports)} after the answers were used: {verdict}"
     )
     points = [
-        f"{each.icon}: {round(each.observed * each.trials)} of {each.trials} not felt; predicted "
+        f"{each.a}: {round(each.observed * each.trials)} of {each.trials} not felt; predicted "
         f"{percent(each.predicted)} ({percent_span(*each.predicted_interval)})"
         for each in fit.reports
         if each.missed

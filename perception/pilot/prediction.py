@@ -129,7 +129,10 @@ def _change(name: str, unit: str, before: Array, after: Array) -> ChangedConstan
 
 @dataclass(frozen=True, slots=True)
 class PairFit:
-    """Confusions of two icons as a share of their `trials`; `missed`: outside the interval."""
+    """Confusions of two icons as a share of their `trials`; `missed`: outside the interval.
+
+    Of plays that were not felt, `b` is what was answered: none.
+    """
 
     a: str
     b: str
@@ -139,17 +142,12 @@ class PairFit:
     predicted_interval: tuple[float, float]
     missed: bool
 
-
-@dataclass(frozen=True, slots=True)
-class ReportFit:
-    """Plays of an icon that were not felt, as a share of its `trials`; `missed`: outside the interval."""
-
-    icon: str
-    trials: int
-    observed: float
-    predicted: float
-    predicted_interval: tuple[float, float]
-    missed: bool
+    @classmethod
+    def of(cls, a: str, b: str, trials: float, observed: float, simulated: Array) -> PairFit:
+        """What was observed beside the simulated experiments (n,), all in trials."""
+        shares, seen = simulated / trials, float(observed / trials)
+        low, high = np.percentile(shares, COVER).tolist()
+        return cls(a, b, int(trials), seen, float(shares.mean()), (low, high), not low <= seen <= high)
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,7 +165,7 @@ class Fit:
     pairs: tuple[PairFit, ...]
     p_reports: float | None = None
     felt_and_named: Three | None = None
-    reports: tuple[ReportFit, ...] = ()
+    reports: tuple[PairFit, ...] = ()
 
     @property
     def missed(self) -> tuple[PairFit, ...]:
@@ -247,13 +245,8 @@ def compare_reports(trials: Trials, played: Confusions, *, seed: int = 0) -> dic
     expected = (total * share)[used]
     variance = expected * (1.0 - share[used])
     off = [float((np.square(one[used] - expected) / variance).sum()) for one in (seen, *silent)]
-    found = []
-    for k in used.tolist():
-        low, high = (np.percentile(silent[:, k], COVER) / total[k]).tolist()
-        observed = float(seen[k] / total[k])
-        missed = not low <= observed <= high
-        found.append(ReportFit(trials.icons[k], int(total[k]), observed, float(share[k]), (low, high), missed))
-    return {"p_reports": share_as_far(off), "felt_and_named": median_three(alert), "reports": tuple(found)}
+    each = tuple(PairFit.of(trials.icons[k], "none", total[k], seen[k], silent[:, k]) for k in used)
+    return {"p_reports": share_as_far(off), "felt_and_named": median_three(alert), "reports": each}
 
 
 def _pairs(trials: Trials, seen: Array, pooled: Array) -> list[PairFit]:
@@ -262,12 +255,8 @@ def _pairs(trials: Trials, seen: Array, pooled: Array) -> list[PairFit]:
         shown = float(seen[a].sum() + seen[b].sum())
         if not shown:
             continue
-        shares = (pooled[:, a, b] + pooled[:, b, a]) / shown
-        low, high = np.percentile(shares, COVER).tolist()
-        observed = float(seen[a, b] + seen[b, a]) / shown
-        names = trials.icons[a], trials.icons[b]
-        missed = not low <= observed <= high
-        found.append(PairFit(*names, int(shown), observed, float(shares.mean()), (low, high), missed))
+        names, observed = (trials.icons[a], trials.icons[b]), seen[a, b] + seen[b, a]
+        found.append(PairFit.of(*names, shown, observed, pooled[:, a, b] + pooled[:, b, a]))
     return found
 
 

@@ -47,9 +47,9 @@ def test_answers_print_write_and_keep(cli: Cli, two: Path, answers: Path, tmp_pa
     said = cli(*asked, "--json", out, "--keep", lab)
     told(
         said,
-        *("Two for a test trials correct 95 % bits ", "bob 6 83 % 44–97 %"),
+        *("Two for a test trials named 95 % bits ", "bob 6 83 % 44–97 %"),
         *("bias (Miller–Madow)", "Test of fit (posterior predictive): p = "),
-        *("two.cue before", "six-icons before", "effective sample size ", " of 24 draws"),
+        *("two.cue felt & named ", "six-icons felt & named ", "effective sample size ", " of 24 draws"),
     )
     assert said.stderr == f"wrote {out}\nwrote {lab} and {lab.with_suffix('.csv')}\n"
     own = json.loads(out.read_text(encoding="utf-8"))
@@ -148,7 +148,7 @@ def test_a_table_of_measurements_conditions_a_set(cli: Cli, two: Path, tmp_path:
         said,
         *("cold, limits, 1 K/s 2 1.79 K", "warm, choice reaction 2 1.89 s", "Test of fit (posterior predictive): p = "),
         *("1 of 5 values have neither standard_error nor trials: an error of 10 % is assumed.", "Ratings count by"),
-        *("two.cue before", "effective sample size ", " of 40 draws"),
+        *("two.cue felt & named ", "effective sample size ", " of 40 draws"),
         f"thermicon rank {two} --observer {lab.with_suffix('.csv')}",
     )
     found = json.loads(out.read_text(encoding="utf-8"))

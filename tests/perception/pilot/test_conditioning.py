@@ -151,8 +151,8 @@ def test_an_icon_that_nobody_felt_is_seen_where_each_answer_was_right(silent: fl
     counts[0, 0, 0] = 10.0 - silent
     fit = compare(Trials(("a", "b", "c"), ("P",), counts, unanswered=none), played)
     assert fit.p_reports is not None and (fit.p_reports < 0.01) == missed
-    assert [each.icon for each in fit.reports if each.missed] == ["a"] * missed
-    assert (fit.reports[0].observed, fit.reports[0].predicted) == (silent / 10.0, pytest.approx(0.1))
+    assert [each.a for each in fit.reports if each.missed] == ["a"] * missed
+    assert (fit.reports[0].observed, fit.reports[0].predicted) == (silent / 10.0, pytest.approx(0.1, abs=0.02))
     # What is felt and named was felt and was named: nine of ten plays of what the same prediction has of names.
     assert fit.felt_and_named is not None
     assert fit.felt_and_named[0] == pytest.approx(0.9 * fit.proportion_correct[0], abs=0.05)

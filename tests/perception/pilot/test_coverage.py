@@ -74,7 +74,9 @@ def test_intervals_cover_two_hundred_laboratories_and_twenty_trials_narrow_a_lit
     bench = Bench.of(1000, 200, 8)
     first, second = (stage(read_cue(name), RIG, bench.prior) for name in ("six-icons", "pulse-sequences"))
     people, left = bench.other_people(bench.some), bench.other_people(bench.true)
-    predictions = [(each.confusions(people).correct, each.confusions(left).correct) for each in (first, second)]
+    pairs = [(each.confusions(people), each.confusions(left)) for each in (first, second)]
+    predictions = [(guess.correct, truth.correct) for guess, truth in pairs]
+    predictions += [(guess.felt_and_named, truth.felt_and_named) for guess, truth in pairs]
     answered, invited = first.confusions(bench.some), first.confusions(bench.true)
 
     def judged(participants: int) -> tuple[float, list[float], list[float]]:
@@ -96,6 +98,7 @@ def test_intervals_cover_two_hundred_laboratories_and_twenty_trials_narrow_a_lit
 
     with quiet_blas():
         one, four = judged(1), judged(4)
+    print(one, four)
     for _, covered, _ in (one, four):
         assert all(0.90 <= each <= 0.995 for each in covered)
     assert 1.02 <= one[2][0] <= 1.12  # docs/how-to/your-pilot.md says 1.06
