@@ -15,7 +15,7 @@ from thermicon.perception.selection.request import Objective
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import bars_aside, fail, note, progress_bar, shown_at_once, usage
 from ..report.following import Command, after_choice, after_choices, largest
-from ..report.improve_report import frontier_report, search_report
+from ..report.improve_report import edits_report, frontier_report, search_report
 from ..report.rank_report import rank_report
 from ..report.set_report import SetReport, cures, report_of
 from ..report.terminal import show
@@ -56,7 +56,8 @@ def improve_command(
     up_to: Annotated[int | None, opt("N", "Choose the best 2, 3, … N icons, as a table.", 2, MOST_CHOSEN)] = None,
     goal: Goals = None,
     edits: Annotated[
-        bool, flag("--edits", "Find the cheapest edit of every pair that is not distinguishable.")
+        bool,
+        flag("--edits", "Find the cheapest edit of every pair that is not distinguishable; -o writes the edited set."),
     ] = False,
     evaluations: Annotated[
         int | None,
@@ -110,8 +111,7 @@ def improve_command(
     if objective is not None and not (choose or up_to or searched):
         raise usage("needs --choose K, --up-to K or a search of families", "--objective")
     table = (*TRACE_SUFFIXES, *FIGURE_SUFFIXES, ".cue")
-    chooses = (".cue", ".json") if choose is not None else (".json",)
-    kinds = (".cue",) if searched else table if up_to is not None else chooses
+    kinds = (".cue",) if searched else table if up_to is not None else (".cue", ".json")
     outputs = output or []
     for path in outputs:
         check_output(path, kinds, "what this finds")
@@ -156,12 +156,20 @@ def improve_command(
         for path in outputs:
             if path.suffix == ".cue" and made.choice is not None:
                 write_text(str(_written(icons, made.choice.icons, where)), path, missed)
+            elif path.suffix == ".cue":
+                if made.edited is None:
+                    why = "no edit that was tried meets the goal" if made.ways else "there is no edit to write"
+                    refused, written = f"{why}, and no set was written", None
+                else:
+                    write_text(str(_edited(icons, made.edited, where)), path, missed * (made.way is None))
             else:
                 write_text(made.to_json() + "\n", path)
         if figure.figure is not None:
             figure.write_set(made.ranking if made.choice is None else _alone(made.choice.icons, icons, where, how))
         following = after_choice(made, command, written)
-        told = rank_report(made, icons.title, cures(made.ranking, icons, where), following)
+        told = edits_report(made, icons.title, following)
+        if made.choice is not None:
+            told = rank_report(made, icons.title, cures(made.ranking, icons, where), following)
     if STDOUT not in outputs:
         show(told)
     if refused:
@@ -227,8 +235,7 @@ def _roughly(icons: IconSet, rig: Rig, how: dict[str, Any]) -> str:
 
 def objective_of(goal: Goal | None) -> Objective:
     """The objective of a goal: the worst pair, unless it is about what is felt and named, named, or bits."""
-    of: dict[str, Objective] = {"felt_and_named": "felt-and-named", "named": "named", "bits": "bits"}
-    return next((word for name, word in of.items() if goal is not None and goal.of(name) is not None), "worst")
+    return "worst" if goal is None else goal.objective
 
 
 def chosen(
@@ -250,6 +257,7 @@ def chosen(
         rig,
         how.pop("parameters"),
         edits="all" if edits or (count is None and goal is None) else "worst" if count is None else "none",
+        make_edits=count is None,
         choosing=None if count is None else Selection(count, objective, tuple(must or ()), *limits),
         warnings=tuple(rig.warnings),
         **how,
@@ -268,6 +276,12 @@ def _written(icons: IconSet, names: Sequence[str], rig: Rig) -> IconSet:
     from thermicon.perception.selection.candidates import Candidate, set_of_run
 
     return set_of_run(icons, [Candidate(icons[name]) for name in names], rig, f"best {len(names)}")
+
+
+def _edited(icons: IconSet, made: Ranking, rig: Rig) -> IconSet:
+    from thermicon.perception.selection.candidates import Candidate, set_of_run
+
+    return set_of_run(icons, [Candidate(icon) for icon in made.job.icons], rig, "edited")
 
 
 def _by_written_names(icons: IconSet, must: Sequence[str], rig: Rig) -> tuple[IconSet, list[str]]:

@@ -7,9 +7,11 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import count_of, listed, number, percent
+from thermicon.perception.selection.goal import word_of
 
 if TYPE_CHECKING:
     from thermicon.perception import Ranking
+    from thermicon.perception.selection.advice import Way
     from thermicon.perception.selection.choose import Choice
     from thermicon.perception.selection.goal_result import GoalPartResult, GoalResult
 
@@ -18,10 +20,11 @@ NAMES = {"worst": "the worst pair", "felt-and-named": "felt and named", "named":
          "bits": "bits", "bits-per-s": "bits per second"}  # fmt: skip
 
 
-def goal_lines(goal: GoalResult, verdict: str = "") -> Iterator[str]:
+def goal_lines(goal: GoalResult, verdict: str = "", ways: Sequence[Way] = ()) -> Iterator[str]:
     """Report whether a goal is met, or another `verdict`: what was predicted of each part, and what is in the way.
 
-    What a share of people means is said too, unless a `verdict` is given, whose command says it with its table.
+    What a share of people means is said too, unless a `verdict` is given, whose command says it with its table. `ways`
+    that were tried come with the part that is missed most, before and after.
     """
     yield f"Goal: {verdict or ('met' if goal.met else 'NOT met')}"
     for each in goal.parts:
@@ -30,8 +33,29 @@ def goal_lines(goal: GoalResult, verdict: str = "") -> Iterator[str]:
         yield f"  {SHARE}"
     if goal.binding:
         yield f"  In the way: {'; '.join(goal.binding)}"
+    worst = min(goal.parts, key=lambda part: part.margin)
+    for way in ways:
+        after, which = way.after(worst), f"{word_of(worst.part.quantity)}{worst.part.whose}"
+        met = "which meets the goal" if way.result.met else "which misses the goal"
+        yield f"  Tried: {way_words(way)}: {which} {_said(worst)} → {_said(after)}, {met}"
     if goal.unreached:
         yield f"  Not reached, and judged as the rig would play them: {', '.join(goal.unreached)}; export refuses them"
+
+
+def way_words(way: Way) -> str:
+    """What was changed, in words."""
+    if way.choice is not None:
+        return f"the best {len(way.choice.icons)}, {', '.join(way.choice.icons)}"
+    if way.area_cm2 is not None:
+        return f"a contact of {way.area_cm2:g} cm²"
+    return "; ".join(f"in {edit.icon}, {edit.old} → {edit.new}" for edit in way.edits)
+
+
+def _said(found: GoalPartResult) -> str:
+    """The value of a part in its unit."""
+    if found.value is None or found.part.unit == "%":
+        return "none" if found.value is None else f"{100.0 * found.value:.1f} %"
+    return found.verdict or f"{number(found.value, 2)} {found.part.unit}".rstrip()
 
 
 def goal_value(found: GoalPartResult) -> str:
@@ -40,10 +64,8 @@ def goal_value(found: GoalPartResult) -> str:
         return f"{found.verdict} in this simulation; export judges the worst case"
     if found.value is None:
         return "none"
-    unit, value, gap = found.part.unit, found.value, abs(found.value - found.part.limit)
-    said, missed = f"{number(value, 2)} {unit}".rstrip(), f"{number(gap, 2)} {unit}".rstrip()
-    if unit == "%":
-        said, missed = f"{100.0 * value:.1f} %", f"{100.0 * gap:.1f} points"
+    unit, gap, said = found.part.unit, abs(found.value - found.part.limit), _said(found)
+    missed = f"{100.0 * gap:.1f} points" if unit == "%" else f"{number(gap, 2)} {unit}".rstrip()
     return said if found.met else f"{said}, missed by {missed}"
 
 

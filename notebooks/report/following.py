@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import listed
@@ -17,7 +18,7 @@ Command = Callable[..., str]
 """Writes a command for the set and rig of the run, from its name and the words that are added."""
 
 PLAYED = ("--to", "csv", "-o", "drives")
-WIDER = "A larger contact area, another site or icons of another kind would help more."
+OTHER = "Icons of another kind, another rig or a lower goal remain to be tried."
 OF_ICONS = ("detected", "onset")
 
 
@@ -26,22 +27,20 @@ def after_ranking(found: SetReport, command: Command, cures: Mapping[str, str] |
     from thermicon.perception.criteria import FELT_FROM
 
     missed = [] if found.goal is None else [each.part.quantity for each in found.goal.parts if not each.met]
-    icons, wanted = found.ranking.icons, _goal(None if found.goal is None else found.goal.goal)
+    icons = found.ranking.icons
     lost = [icon.name for icon in icons if not (icon.safe and icon.reachable)]
     if curable := [name for name in lost if name in (cures or {})]:
         return f"change the lines of {listed(curable)} as said below, then {command('rank')}"
     if lost:
         return command("simulate", "--icon", lost[0])
-    if any(each in OF_ICONS for each in missed) or (not missed and min(found.ranking.felt.detected) < FELT_FROM):
+    if not missed and min(found.ranking.felt.detected) < FELT_FROM:
         return _wider(found, command)
     if missed == ["count"]:
         return f"write more icons, then {command('rank')}"
-    if missed and (len(icons) < 3 or {*missed} <= {"time", "energy"}):
-        return f"shorter, weaker or other icons, then {command('rank')}"
     if missed:
-        return command("improve", "--up-to", str(len(icons)), *wanted)
+        return _by_way(found, command)
     if _close(found):
-        return command("improve", "--edits")
+        return command("improve", "--edits", "-o", "edited.cue")
     return command("export", *PLAYED)
 
 
@@ -60,7 +59,7 @@ def after_choices(found: Frontier, command: Command, written: str | None) -> str
     count = largest(found)
     if count is None:
         those = "of these icons" if all(point.optimal for point in found.points) else "that was looked at"
-        return f"no choice {those} {'meets the goal' if found.goals else 'is distinguishable'}. {WIDER}"
+        return f"no choice {those} {'meets the goal' if found.goals else 'is distinguishable'}. {OTHER}"
     objective, goal = found.points[0].objective, _goal(found.goals[0].goal if found.goals else None)
     return command("improve", "--choose", str(count), "--objective", objective, *goal, "-o", "best.cue")
 
@@ -68,22 +67,38 @@ def after_choices(found: Frontier, command: Command, written: str | None) -> str
 def after_choice(found: SetReport, command: Command, written: str | None) -> str:
     """To export what was written, unless its goal is missed."""
     if found.goal is not None and not found.goal.met:
-        return f"{'; '.join(found.goal.binding)}. {WIDER}"
+        edited = found.way is not None and found.way.edits and written
+        return command("export", *PLAYED, file=written) if edited else _by_way(found, command)
     if found.choice is None and found.edits:
-        return _after_edits(found, command)
+        return _after_edits(found, command, written)
     return command("export", *PLAYED, file=written) if written else "add -o best.cue, which is then exported"
 
 
-def _after_edits(found: SetReport, command: Command) -> str:
-    """To make the edits, or fewer icons where no edit helps."""
-    from thermicon.perception.selection.edit import Edit
+def _by_way(found: SetReport, command: Command) -> str:
+    """To go the cheapest way that meets the goal; the obstacles where none that was tried does."""
+    assert found.goal is not None
+    way, goal = found.way, _goal(found.goal.goal)
+    if way is None:
+        none = "Nothing that was tried meets the goal. " if found.ways else ""
+        return f"{'; '.join(found.goal.binding)}. {none}{OTHER}"
+    if way.edits:
+        return command("improve", "--edits", *goal, "-o", "edited.cue")
+    if way.choice is not None:
+        return command("improve", "--choose", str(len(way.choice.icons)), *goal, "-o", "best.cue")
+    larger = ("--set", f"contact.area_cm2={way.area_cm2:g}")
+    if found.choice is None:
+        return command("rank", *larger, *goal)
+    return command("improve", "--choose", str(len(found.choice.icons)), *larger, *goal, "-o", "best.cue")
 
-    count = len(found.ranking.icons)
-    if any(isinstance(each, Edit) for each in found.edits.values()):
-        return f"change the lines above, then {command('rank')}"
-    if not _close(found):
+
+def _after_edits(found: SetReport, command: Command, written: str | None) -> str:
+    """To export the edited set, or to take fewer icons where edits do not help enough."""
+    count, after = len(found.ranking.icons), found.edited
+    if after is not None and not _close(replace(found, ranking=after)):
+        return command("export", *PLAYED, file=written) if written else "add -o edited.cue, which is then exported"
+    if after is None and not _close(found):
         return command("export", *PLAYED)
-    return command("improve", "--up-to", str(count)) if count > 2 else f"no edit helps. {WIDER}"
+    return command("improve", "--up-to", str(count)) if count > 2 else f"no edit helps enough. {OTHER}"
 
 
 def largest(found: Frontier) -> int | None:

@@ -9,7 +9,7 @@ from thermicon.icons.number_text import count_of, number, percent, percent_span
 
 from .blocks import Block, Bullets, Heading, Text, grid
 from .choices import NAMES, goal_lines, laboratory, left_out, maximised
-from .rank_details import trouble_lines
+from .rank_details import crowd_text, edit_text, trouble_lines
 from .rank_report import BARELY
 
 if TYPE_CHECKING:
@@ -95,6 +95,31 @@ def _reached(found: Frontier) -> str:
     return "What 95 % of people reach is about people alone, at the nominal constants: milder than in a goal."
 
 
+def edits_report(made: SetReport, title: str, following: str) -> list[Block]:
+    """Report the edits of a set without its ranking: the goal, each edit or why there is none, and their effect."""
+    ranking, after, said = made.ranking, made.edited, list[str]()
+    for a, b in made.edits:
+        pair = next(each for each in ranking.pairs if {each.a, each.b} == {a, b})
+        if text := edit_text(made, pair):
+            said.append(f"{a} and {b}, d′ {number(pair.d_prime)}: {text}")
+    effect = "No edit that was tried meets the goal." if made.ways else "No pair has an edit that helps."
+    if after is not None and after.worst is not None:
+        effect = (
+            f"With {'the edits that meet the goal' if made.way else 'these edits'}: felt and named "
+            f"{percent(ranking.felt_and_named)} → {percent(after.felt_and_named)}, worst pair {after.worst.a} and "
+            f"{after.worst.b}, d′ {number(after.worst.d_prime)}."
+        )
+    elif not said:
+        effect = "Every pair is distinguishable: no edit is needed."
+    return [
+        *([Heading(title, 1)] if title else []),
+        *([Text("\n".join(goal_lines(made.goal, "", made.ways)))] if made.goal else []),
+        *([Bullets(tuple(said))] if said else []),
+        Text("\n".join([effect, f"Next: {following}"])),
+        Text(f"Predicted, not measured: {crowd_text(ranking)}."),
+    ]
+
+
 def search_report(found: SearchResult, before: SetReport, after: SetReport, title: str, following: str) -> list[Block]:
     """Report the found set, its scores next to those of the initial set, the goal, what follows, and the caveat."""
     from thermicon.perception.selection.candidates import FOUND
@@ -106,7 +131,9 @@ def search_report(found: SearchResult, before: SetReport, after: SetReport, titl
     goal: list[Block] = []
     if after.goal is not None:
         goal.append(Text("\n".join(goal_lines(after.goal))))
-        goal += [] if after.goal.met else [Text("Not reached by this search: try more --evaluations, or another rig.")]
+        goal += (
+            [] if after.goal.met else [Text("Not reached by this search: more --evaluations may find a better set.")]
+        )
     return [
         *([Heading(title, 1)] if title else []),
         Text("Found:"),

@@ -46,7 +46,7 @@ def rank_report(
     if not details and len(notes) > shown:
         more = count_of(len(notes) - shown, "more note")
         notes = [*notes[:shown], Text(f"{more}: thermicon rank --details", "warn")]
-    advice = edit_text(made, ranking.worst) if ranking.worst else ""
+    advice = edit_text(made, ranking.worst) if ranking.worst and not made.ways else ""  # tried, and told so
     chosen = list(choice_lines(made.choice, made.goal)) if made.choice else []
     by = "" if ranking.observer == "shipped" else f", observer {ranking.observer}"
     table = f" The table is about all {len(icons)} icons together." * bool(chosen)
@@ -54,7 +54,7 @@ def rank_report(
     told: list[Block] = [Heading(chosen[0], 3), Bullets(tuple(chosen[1:]))] if chosen else []
     return [
         *([Heading(title, 1)] if title else []),
-        *([Text("\n".join(goal_lines(made.goal)))] if made.goal else []),
+        *([Text("\n".join(goal_lines(made.goal, "", made.ways)))] if made.goal else []),
         Facts(cards(made), cards=True),
         Text("\n".join(filter(None, [advice[:1].upper() + advice[1:], f"Next: {following}" if following else ""]))),
         *told,

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from thermicon.perception.ranking.rank_file import as_text, plain, ranking_file
 
-from ..messages import progress_bar
+from ..messages import note, progress_bar, shown_at_once
+from .choices import way_words
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
     from thermicon.perception import Goal, Ranking
+    from thermicon.perception.selection.advice import Way
     from thermicon.perception.selection.choose import Choice
     from thermicon.perception.selection.edit import Edit, NoEdit
     from thermicon.perception.selection.goal_result import GoalResult
@@ -22,13 +24,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class SetReport:
-    """A ranking, the icons chosen of it, the goal as set or choice meet it, edits by the names of pairs, warnings."""
+    """A ranking, the icons chosen of it, the goal as set or choice meet it, edits by the names of pairs, warnings.
+
+    `ways` to a goal that is missed were tried, until one met it; `edited` is the set with its edits made, ranked.
+    """
 
     ranking: Ranking
     choice: Choice | None = None
     goal: GoalResult | None = None
     edits: Mapping[tuple[str, str], Edit | NoEdit] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    ways: tuple[Way, ...] = ()
+    edited: Ranking | None = None
+
+    @property
+    def way(self) -> Way | None:
+        """The cheapest of the ways that meets the goal."""
+        return next((way for way in self.ways if way.result.met), None)
 
     def to_dict(self) -> dict[str, Any]:
         """The content of `rank --json` as plain data."""
@@ -37,6 +49,8 @@ class SetReport:
         made = ranking_file(self.ranking)
         made["warnings"] = list(self.warnings)
         made["goal"] = None if self.goal is None else plain(self.goal.to_dict())
+        if self.ways:
+            made["goal"]["tried"] = [{"way": way_words(way), **plain(way.result.to_dict())} for way in self.ways]
         made["chosen"] = None if self.choice is None else plain(self.choice.to_dict())
         for pair in made["pairs"]:
             edit = self.edits.get((pair["a"], pair["b"]))
@@ -57,6 +71,7 @@ def report_of(
     draws: int,
     *,
     edits: Literal["worst", "all", "none"] = "worst",
+    make_edits: bool = False,
     choosing: Selection | None = None,
     goal: Goal | None = None,
     warnings: tuple[str, ...] = (),
@@ -65,11 +80,12 @@ def report_of(
 ) -> SetReport:
     """Rank a set; choose of it, judge it by a goal and edit its pairs, as far as that is asked.
 
-    `draws` are those of an interval, `how` other arguments of `rank`.
+    `draws` are those of an interval, `how` other arguments of `rank`. With `make_edits`, the edited set is ranked too.
     """
     from thermicon.perception import choose, rank
     from thermicon.perception.kernels.parallel import beside, step_counter
     from thermicon.perception.ranking.rank import with_intervals
+    from thermicon.perception.selection.advice import Way, compatible, ranked_as, ways_to, with_edits
     from thermicon.perception.selection.edit import cheapest_edits
     from thermicon.perception.selection.goal_result import judge_goal
     from thermicon.perception.selection.request import check_selection
@@ -91,7 +107,15 @@ def report_of(
         elif draws:
             ranking = with_intervals(ranking, draws, step_counter(progress, draws))
     reached = None if goal is None else judge_goal(goal, ranking, choice)
-    return SetReport(ranking, choice, reached, edited(), warnings)
+    found, ways, after = edited(), tuple[Way, ...](), None
+    if reached is not None and not reached.met:
+        if shown_at_once():
+            note("trying ways to the goal …")
+        ways = ways_to(ranking, reached, draws, found, choice)
+    made = SetReport(ranking, choice, reached, found, warnings, ways)
+    if make_edits and (some := made.way.edits if made.way else compatible(list(found.values()))):
+        after = ranked_as(ranking, with_edits(ranking.job.icons, some), draws if goal else 0)
+    return replace(made, edited=after)
 
 
 def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:

@@ -38,7 +38,7 @@ MOST_CONFIRMED = 8
 MOST_RECOUNTED = 50
 """People who meet the set, and whose episodes are counted, again with the edit."""
 ROUNDING = 0.005
-"""A proportion correct is printed in whole per cent: an edit that changes it by no more than half of one is none."""
+"""Felt and named is printed in whole per cent: an edit that changes it by no more than half of one is none."""
 EDITS = ("worst", "all", "none")
 
 
@@ -84,7 +84,7 @@ def cheapest_edit(ranking: Ranking, a: str, b: str, *, wanted: float = DISTINGUI
     """Find the cheapest edit of one of two icons that separates them by a median d′.
 
     Every edit that is offered is read back from its text, simulated, safe and reachable, and makes no other pair worse
-    by more than 0.1 d′ below twice `wanted`, and raises the proportion correct of the set by more than half a point.
+    by more than 0.1 d′ below twice `wanted`, and raises felt and named of the set by more than half a point.
     The people of the ranking confirm it, in its task.
 
     Parameters
@@ -160,12 +160,10 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
         if parted >= wanted and not harmed and parse(str(one.icon))[one.icon.name].statements == one.icon.statements:
             people = ranking.crowd.but(people=min(ranking.people, MOST_RECOUNTED))
             sets = job.icons, _edited(ranking, one)
-            old, new = (appraise(each, job.rig, crowd=people, task=job.task).proportion_correct for each in sets)
+            old, new = (appraise(each, job.rig, crowd=people, task=job.task).felt_and_named for each in sets)
             gain = new - old
             if gain <= ROUNDING:
-                return NoEdit(
-                    f"separating them changes the proportion correct of the set by {100 * gain:+.1f} points only"
-                )
+                return NoEdit(f"separating them changes felt and named of the set by {100 * gain:+.1f} points only")
             recounted = _recounted(ranking, one, crowd, end_s)
             return Edit(one.icon.name, one.old, one.new, one.cost, one.added_s, parted, one.icon, recounted)
         rejected.opposed |= harmed

@@ -16,6 +16,7 @@ from thermicon.icons.model.arguments import InputError, checked
 from thermicon.icons.near_words import did_you_mean
 
 from ..criteria import FELT_FROM
+from .request import Objective
 
 GRAMMAR = r"""
 start: part ("," part)*
@@ -192,6 +193,12 @@ class Goal:
     def of_sets(self) -> tuple[GoalPart, ...]:
         """Parts that depend on which icons are together, or on single people; the others bind icons and totals."""
         return tuple(part for part in self.parts if part.quantity in OF_SETS or part.people is not None)
+
+    @property
+    def objective(self) -> Objective:
+        """What a choice maximises where margins are equal: the worst pair, unless it asks for shares or bits."""
+        words: dict[str, Objective] = {"felt_and_named": "felt-and-named", "named": "named", "bits": "bits"}
+        return next((word for name, word in words.items() if self.of(name) is not None), "worst")
 
     @property
     def least_detected(self) -> float | None:

@@ -85,7 +85,7 @@ def test_rules_of_thumb_score_a_set_without_the_model(cli: Cli) -> None:
     ("d_prime", "said"),
     [
         (2.57, "thermicon export 'my icons.cue' --set contact.area_cm2=9 --to csv -o drives"),
-        (2.5, "thermicon improve 'my icons.cue' --people 7 --set contact.area_cm2=9 --edits"),
+        (2.5, "thermicon improve 'my icons.cue' --people 7 --set contact.area_cm2=9 --edits -o edited.cue"),
     ],
 )
 def test_the_next_command_is_chosen_by_what_was_found(d_prime: float, said: str) -> None:
