@@ -28,10 +28,12 @@ class Trials:
         Name of the file, and the first 16 digits of its SHA-256.
     unanswered
         Trials without an answer, not felt (participants, icons presented).
-    passed, missing
-        Rows of the file with neither an icon nor an answer; trials marked as missing, which do not count.
+    passed
+        Rows of the file with neither an icon nor an answer.
     grouped
         Whether the counts of a group are given as those of one participant.
+    missing
+        Trials marked as missing, which do not count.
 
     Examples
     --------
