@@ -48,9 +48,9 @@ def pilot_command(
         list[Path] | None,
         out(
             "TRIALS.csv",
-            "Sharpen the prediction by answers: columns participant, trial, presented, responded (none: not felt). Or "
-            "by measurements: participant, kind (threshold, reaction_time, rating), method, channel, size_K, value, unit, "
-            "standard_error, trials.",
+            "Sharpen the prediction by answers: columns participant, trial, presented, responded (none: not felt). "
+            "Or by measurements: participant, kind (threshold, reaction_time, rating), method, channel, size_K, value, "
+            "unit, standard_error, trials.",
             "--answers",
             "--measurements",
         ),

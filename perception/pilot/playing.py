@@ -43,14 +43,10 @@ class Confusions:
     reported: Small
 
     @property
-    def alert(self) -> Array:
-        """Probability (laboratories, people, icons) that an icon is felt and named: of each person, before any mean."""
-        return np.asarray(self.reported * np.diagonal(self.probability, axis1=2, axis2=3), dtype=np.float64)
-
-    @property
     def felt_and_named(self) -> Array:
-        """Share felt and named of every laboratory, as the mean over its people."""
-        return np.asarray(self.alert.mean(axis=(1, 2)))
+        """Share felt and named of every laboratory: of each person and icon, before the mean over them."""
+        each = self.reported * np.diagonal(self.probability, axis1=2, axis2=3)
+        return np.asarray(each.mean(axis=(1, 2), dtype=np.float64))
 
     @property
     def correct(self) -> Array:

@@ -173,7 +173,7 @@ def _matrix(path: Path, table: Table, places: Mapping[str, int]) -> Array:
         numbers = [as_number(cell, table.mark) for cell in cells]
         if wrong := [cell for cell, size in zip(cells, numbers, strict=True) if size % 1 or not 0 <= size < MOST]:
             raise TrialsError(f"{where}: {quoted(wrong[0])} is not a count; {PER_CENT}")
-        counts[shown, said] = numbers
+        np.add.at(counts[shown], said, numbers)  # silence may have several columns
     sums = counts.sum(axis=1)
     if not counts[:, :-2].any():
         raise TrialsError(f"{path}: every count is 0; write how often each answer was given")

@@ -128,6 +128,10 @@ def test_what_is_missing_is_no_trial_and_a_silence_is_a_miss_of_felt_and_named_a
         written(tmp_path, "dip,3,1,4,2", "cool-step,0,5,0,0", head=f",dip,cool-step,{lost},none"), ICONS
     )
     assert (counts.missing, counts.unanswered.sum(), counts.total, counts.grouped) == (4, 2, 11, True)
+    both = read_trials(
+        written(tmp_path, "dip,3,0,4,2", "cool-step,0,1,1,0", head=",dip,cool-step,timeout,none"), ICONS[::2]
+    )
+    assert both.unanswered.tolist() == [[1, 6]]
 
 
 def test_somebody_who_felt_nothing_is_a_participant_without_a_name(tmp_path: Path) -> None:
