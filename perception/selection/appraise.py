@@ -45,8 +45,8 @@ class Appraisal:
     bits_per_s: float
     reached: float
     each_felt_and_named: Array = field(compare=False)
-    detected: Array = field(compare=False)
     confused: Array = field(compare=False)
+    detected: Array = field(compare=False, default_factory=lambda: np.empty(0))
 
     def value(self, objective: Objective) -> float:
         """The number by which an objective judges a set."""
