@@ -19,7 +19,6 @@ Command = Callable[..., str]
 
 PLAYED = ("--to", "csv", "-o", "drives")
 OTHER = "Icons of another kind, another rig or a lower goal remain to be tried."
-OF_ICONS = ("detected", "onset")
 
 
 def after_ranking(found: SetReport, command: Command, cures: Mapping[str, str] | None = None) -> str:
@@ -84,7 +83,8 @@ def _by_way(found: SetReport, command: Command) -> str:
     if way.edits:
         return command("improve", "--edits", *goal, "-o", "edited.cue")
     if way.choice is not None:
-        return command("improve", "--choose", str(len(way.choice.icons)), *goal, "-o", "best.cue")
+        kept = [word for name in way.must for word in ("--must", name)]
+        return command("improve", "--choose", str(len(way.choice.icons)), *kept, *goal, "-o", "best.cue")
     larger = ("--set", f"contact.area_cm2={way.area_cm2:g}")
     if found.choice is None:
         return command("rank", *larger, *goal)

@@ -114,6 +114,7 @@ def edits_report(made: SetReport, title: str, following: str) -> list[Block]:
     return [
         *([Heading(title, 1)] if title else []),
         *([Text("\n".join(goal_lines(made.goal, "", made.ways)))] if made.goal else []),
+        *[Text(line, "warn") for line in trouble_lines(ranking.icons, {})],
         *([Bullets(tuple(said))] if said else []),
         Text("\n".join([effect, f"Next: {following}"])),
         Text(f"Predicted, not measured: {crowd_text(ranking)}."),

@@ -111,7 +111,10 @@ def report_of(
     if reached is not None and not reached.met:
         if shown_at_once():
             note("trying ways to the goal …")
-        ways = ways_to(ranking, reached, draws, found, choice)
+        for way in ways_to(ranking, reached, draws, found, choice, () if choosing is None else choosing.must):
+            ways += (way,)
+            if way.result.met:
+                break
     made = SetReport(ranking, choice, reached, found, warnings, ways)
     if make_edits and (some := made.way.edits if made.way else compatible(list(found.values()))):
         after = ranked_as(ranking, with_edits(ranking.job.icons, some), draws if goal else 0)

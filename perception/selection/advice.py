@@ -1,6 +1,6 @@
 """Ways to a goal that a set misses: each is tried with the same people and draws before it is offered.
 
-The cheapest come first: edits of the icons, fewer icons, a larger contact. The first that meets the goal ends the list.
+The cheapest come first: edits of the icons, fewer icons, a larger contact.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ from ..ranking.rank import rank
 from ..ranking.ranking import Ranking
 from .choose import Choice, choose
 from .edit import Edit, NoEdit, cheapest_edit
-from .goal import Goal
 from .goal_result import GoalPartResult, GoalResult, judge_goal
 from .request import ChoiceError, Selection
 
@@ -32,31 +31,19 @@ MOST_PAIRS = 6
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """A change that was tried: `edits`, a `choice` of fewer icons, or a contact of `area_cm2`, and the goal with it."""
+    """A change that was tried: `edits`, a `choice` of fewer icons, `must` among them, or a contact of `area_cm2`; and
+    the goal with it.
+    """
 
     result: GoalResult
     edits: tuple[Edit, ...] = ()
     choice: Choice | None = None
     area_cm2: float | None = None
+    must: tuple[str, ...] = ()
 
     def after(self, before: GoalPartResult) -> GoalPartResult:
         """The part of the goal that was one before, with this change."""
         return next(each for each in self.result.parts if each.part == before.part)
-
-
-def ways_to(
-    ranking: Ranking, missed: GoalResult, draws: int, edits: Edits, choice: Choice | None = None
-) -> tuple[Way, ...]:
-    """Try ways until one meets a goal that the set, or a choice out of it, misses."""
-    found: list[Way] = []
-    wrong = {each.part.quantity for each in missed.parts if not each.met}
-    if missed.met or wrong <= {"count", "safety"}:
-        return ()
-    for way in _ways(ranking, missed.goal, wrong, draws, edits, choice):
-        found.append(way)
-        if way.result.met:
-            break
-    return tuple(found)
 
 
 def compatible(edits: Sequence[Edit | NoEdit]) -> tuple[Edit, ...]:
@@ -86,22 +73,29 @@ def ranked_as(ranking: Ranking, icons: Sequence[Icon], draws: int, rig: Rig | No
     return rank(tuple(icons), where, crowd=ranking.crowd, trials=job.trials, task=job.task, parameters=draws)
 
 
-def _ways(
-    ranking: Ranking, goal: Goal, wrong: set[str], draws: int, edits: Edits, choice: Choice | None
-) -> Iterator[Way]:  # fmt: skip
-    job, playable = ranking.job, all(icon.playable for icon in ranking.icons)
+def ways_to(
+    ranking: Ranking,
+    missed: GoalResult,
+    draws: int,
+    edits: Edits,
+    choice: Choice | None = None,
+    must: tuple[str, ...] = (),
+) -> Iterator[Way]:
+    """Try ways to a goal that the set, or a choice out of it, misses, the cheapest first."""
+    job, goal, playable = ranking.job, missed.goal, all(icon.playable for icon in ranking.icons)
+    wrong = {each.part.quantity for each in missed.parts if not each.met}
     felt = wrong - {"time", "energy", "count", "safety"}
     if choice is None and playable and felt and ranking.pairs:
         for some in _edits(ranking, edits):
             yield Way(judge_goal(goal, ranked_as(ranking, with_edits(job.icons, some), draws)), edits=some)
     least = max(2, int(goal.of("count") or 2))
     most = len(ranking.icons) if choice is None else len(choice.icons)
-    for count in range(most - 1, least - 1, -1):
+    for count in range(most - 1, least - 1, -1) if wrong != {"count"} else ():
         try:
-            fewer = choose(ranking, Selection(count, goal.objective, (), *goal.totals), goal=goal, parameters=draws)
+            fewer = choose(ranking, Selection(count, goal.objective, must, *goal.totals), goal=goal, parameters=draws)
         except ChoiceError:
             continue
-        yield Way(judge_goal(goal, ranking, fewer), choice=fewer)
+        yield Way(judge_goal(goal, ranking, fewer), choice=fewer, must=must)
     names = ranking.labels if choice is None else choice.icons
     for times in LARGER if felt and playable else ():
         area = float(f"{1e4 * times * job.rig.contact.area_m2:.3g}")

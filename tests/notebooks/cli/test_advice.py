@@ -75,6 +75,13 @@ def test_edits_are_written_with_their_effect_and_without_the_ranking_again(cli: 
     assert said_next(found)[:2] == ["export", "edited.cue"]
 
 
+def test_fewer_icons_keep_those_that_must_stay(cli: Cli, close: str) -> None:
+    said = cli.good("improve", close, *FEW, "--choose", "3", "--must", "a", "--goal", WANTED.format(96)).stdout
+    words = said_next(said)
+    assert words[words.index("--choose") + 1] == "2" and words[words.index("--must") + 1] == "a"
+    assert "Goal: met" in cli.good(*words).stdout
+
+
 def test_edits_that_do_not_meet_the_goal_are_not_written(cli: Cli, close: str) -> None:
     said = cli("improve", close, *FEW, "--edits", "--goal", WANTED.format(96), "-o", "edited.cue")
     assert said.exit_code and not Path("edited.cue").exists()
