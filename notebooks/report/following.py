@@ -68,7 +68,7 @@ def after_choice(found: SetReport, command: Command, written: str | None) -> str
     if found.goal is not None and not found.goal.met:
         edited = found.way is not None and found.way.edits and written
         return command("export", *PLAYED, file=written) if edited else _by_way(found, command)
-    if found.choice is None and found.edits:
+    if found.choice is None and (found.edits or len(found.ranking.icons) == 1):
         return _after_edits(found, command, written)
     return command("export", *PLAYED, file=written) if written else "add -o best.cue, which is then exported"
 

@@ -110,7 +110,7 @@ def edits_report(made: SetReport, title: str, following: str) -> list[Block]:
             f"{after.worst.b}, d′ {number(after.worst.d_prime)}."
         )
     elif not said:
-        effect = "Every pair is distinguishable: no edit is needed."
+        effect = "Every pair is distinguishable: no edit is needed." if ranking.pairs else "There is no pair to edit."
     return [
         *([Heading(title, 1)] if title else []),
         *([Text("\n".join(goal_lines(made.goal, "", made.ways)))] if made.goal else []),

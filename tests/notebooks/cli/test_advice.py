@@ -75,6 +75,13 @@ def test_edits_are_written_with_their_effect_and_without_the_ranking_again(cli: 
     assert said_next(found)[:2] == ["export", "edited.cue"]
 
 
+def test_a_single_icon_has_nothing_to_edit_and_is_exported_as_it_is(cli: Cli, close: str) -> None:
+    Path("one.cue").write_text("\n".join(CLOSE.splitlines()[:3]), encoding="utf-8")
+    found = cli.good("improve", "one.cue", *FEW).stdout
+    assert "There is no pair to edit." in found
+    assert said_next(found)[:2] == ["export", "one.cue"]
+
+
 def test_fewer_icons_keep_those_that_must_stay(cli: Cli, close: str) -> None:
     said = cli.good("improve", close, *FEW, "--choose", "3", "--must", "a", "--goal", WANTED.format(96)).stdout
     words = said_next(said)
