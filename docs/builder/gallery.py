@@ -43,10 +43,10 @@ def _set(entry: Any, icons: IconSet, kept: Path | None, write: Write) -> Iterato
             _predict(icons, own)
         said = json.loads((own / "said.json").read_text(encoding="utf-8"))
         write(f"gallery/{entry.name}-confusions.png", (own / "confusions.png").read_bytes())
-        yield f"{said['which']}: {said['correct'] * 100:.0f} % correct, {said['bits']:.2f} bits, predicted for {PEOPLE}"
-        yield f"virtual people on the rig `{RIG}`.\n"
+        yield f"{said['which']}: {said['felt'] * 100:.0f} % felt and named, {said['bits']:.2f} bits, predicted for"
+        yield f"{PEOPLE} virtual people on the rig `{RIG}`.\n"
         yield f"![Predicted confusions of {entry.name}](gallery/{entry.name}-confusions.png)\n"
-        yield "| icon | means | correct | most confused with |\n|---|---|---|---|"
+        yield "| icon | means | felt and named | most confused with |\n|---|---|---|---|"
         yield from said["rows"]
         yield ""
     yield f":::{{dropdown}} Cue text of {entry.name}\n:icon: code\n:open:\n"
@@ -64,7 +64,7 @@ def _predict(icons: IconSet, kept: Path) -> None:
     ranking = rank(icons, rig, people=PEOPLE, parameters=0)
     result = ranking.to_dict()["set"]
     kept.mkdir(parents=True, exist_ok=True)
-    said = {"which": which, "correct": result["proportion_correct"], "bits": result["information_bits"]}
+    said = {"which": which, "felt": result["felt_and_named"], "bits": result["information_bits"]}
     said["rows"] = list(_rows(ranking, icons))
     (kept / "said.json").write_text(json.dumps(said), encoding="utf-8")
     (kept / "confusions.png").write_bytes(png(set_figure(ranking)))
@@ -72,11 +72,11 @@ def _predict(icons: IconSet, kept: Path) -> None:
 
 def _rows(ranking: Ranking, icons: IconSet) -> Iterator[str]:
     confusion = ranking.to_dict()["confusion"]
-    labels = confusion["labels"]
+    labels, felt = confusion["labels"], {icon.name: icon.felt_and_named for icon in ranking.icons}
     for name, row in zip(labels, confusion["probability"], strict=True):
         share, other = max((share, label) for label, share in zip(labels, row, strict=True) if label != name)
         meaning = icons[name].metadata.means or ""
-        yield f"| `{name}` | {meaning} | {row[labels.index(name)] * 100:.0f} % | `{other}` {share * 100:.0f} % |"
+        yield f"| `{name}` | {meaning} | {felt[name] * 100:.0f} % | `{other}` {share * 100:.0f} % |"
 
 
 def png(figure: Figure | Any) -> bytes:
