@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path, PurePosixPath
 
 ROOT = Path(__file__).resolve().parents[1]
-PACKAGES = ("icons", "circuit", "perception", "notebooks")
+PACKAGES = ("base", "icons", "circuit", "perception", "notebooks")
 ALWAYS = ("tests/circuit/delivery", "tests/perception/ranking")
 """Exported drives, and a cluster that loses a worker: what costs most when it breaks."""
 SHOWN_IN_A_BROWSER = ("notebooks/workbench", "notebooks/report", "notebooks/canvas_parts", "tests/browser")

@@ -63,7 +63,7 @@ def _is_new(text: str) -> bool:
     """Whether this was not asked before; an empty file in the cache folder remembers it."""
     from hashlib import sha256
 
-    from thermicon.icons.cache_folder import cache_folder
+    from thermicon.base.files.cache_folder import cache_folder
 
     told = cache_folder() / "told" / sha256(text.encode()).hexdigest()[:20]
     if told.exists():

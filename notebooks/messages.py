@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 import typer
 
-from thermicon.icons.model.arguments import InputError, advised
-from thermicon.icons.model.clean_text import clean, clean_line
+from thermicon.base.checks.arguments import InputError, advised
+from thermicon.base.words.clean_text import clean, clean_line
 
 if TYPE_CHECKING:
     pass

@@ -14,7 +14,7 @@ ASSIGNED = r"\n\s*(\w+) = (?:lru_cache\(.*\)|cache)\("
 def test_each_cache_is_known_by_what_it_saves() -> None:
     found = []
     for path in (
-        path for room in ("icons", "circuit", "perception", "notebooks") for path in (ROOT / room).rglob("*.py")
+        path for room in ("base", "icons", "circuit", "perception", "notebooks") for path in (ROOT / room).rglob("*.py")
     ):
         module = path.relative_to(ROOT).with_suffix("").as_posix().replace("/", ".")
         text = path.read_text(encoding="utf-8")

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-FLOW = ("icons", "circuit", "perception", "notebooks")
+FLOW = ("base", "icons", "circuit", "perception", "notebooks")
 LINES_AT_MOST = 400
 GENERATED = {"build", "dist", "__pycache__", "node_modules"}
 

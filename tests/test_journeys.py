@@ -46,7 +46,7 @@ except SystemExit as end:
     assert not end.code
 finally:
     sys.settrace(None)
-folders = tuple(os.path.join(root, package, "") for package in ("icons", "circuit", "perception", "notebooks"))
+folders = tuple(os.path.join(root, package, "") for package in ("base", "icons", "circuit", "perception", "notebooks"))
 print("entered:", *sorted(name for name in entered if name.startswith(folders)), sep="\\n")
 """
 

@@ -15,6 +15,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 LADDER = {
+    "base": ("words", "checks", "files", "numbers", "results"),
     "icons": ("model", "language", "files", "recordings", "pictures"),
     "circuit": ("rig", "solver", "safety", "play", "delivery", "fitting"),
     "perception": (

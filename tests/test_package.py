@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-PACKAGES = ("thermicon", "icons", "circuit", "perception", "notebooks")
+PACKAGES = ("thermicon", "base", "icons", "circuit", "perception", "notebooks")
 LEFT_OUT = shutil.ignore_patterns(
     ".git", ".venv", "__pycache__", "*.py[cod]", "*.egg-info", "build", "dist", ".*_cache", ".hypothesis"
 )

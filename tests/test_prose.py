@@ -34,7 +34,7 @@ def test_no_code_reads_a_sentence() -> None:
 
 
 def test_no_sentence_below_notebooks_names_an_option() -> None:
-    every = list(nodes("icons", "circuit", "perception", within=OPTION.pattern))
+    every = list(nodes("base", "icons", "circuit", "perception", within=OPTION.pattern))
     prose = {id(node.value) for _, node in every if isinstance(node, ast.Expr)}
     told = [(path, node) for path, node in every if isinstance(node, ast.Constant) and id(node) not in prose]
     assert [(path, node.lineno) for path, node in told if OPTION.search(text_of(node))] == []

@@ -18,7 +18,7 @@ from thermicon.icons import load_library
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "explain" / "safety.md"
 NAMED = re.compile(r"`?(tests/[\w/]+\.py)(?:::(\w+))?")
-FILE = re.compile(r"`((?:icons|circuit|perception|notebooks)/[\w./-]+\.\w+)`")
+FILE = re.compile(r"`((?:base|icons|circuit|perception|notebooks)/[\w./-]+\.\w+)`")
 
 
 def test_the_constants_without_a_source_are_those_of_the_code() -> None:

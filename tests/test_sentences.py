@@ -12,8 +12,8 @@ import pytest
 
 from tests import sentences
 from tests.missed import Cases, missed, said
+from thermicon.base.files.inputs import shipped_table
 from thermicon.circuit.delivery import prepare
-from thermicon.circuit.inputs import shipped_table
 from thermicon.circuit.safety import words
 from thermicon.notebooks.report import gate_words
 

@@ -17,9 +17,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thermicon.icons.number_text import signed
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.words.number_text import signed
 
-from ..arrays import Array
 from ..safety.checks import Before, Check, Scenario, worst_of
 from ..safety.demands import CutOff, SingleFault
 from ..safety.ensemble import LaneDrives

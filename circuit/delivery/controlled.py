@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from thermicon.icons.number_text import signed
+from thermicon.base.words.number_text import signed
 
 from ..safety.checks import worst_of
 from ..safety.current import single_of_lanes

@@ -7,10 +7,10 @@ import math
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.words.number_text import signed
 from thermicon.icons import Icon
-from thermicon.icons.number_text import signed
 
-from ..arrays import Array
 from ..rig.rig import Rig
 from ..solver.displayed import judge_display, part_of, trace_of_display
 from ..solver.drive import Drive

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thermicon.base.files.records import RecordTable, shipped_records
 from thermicon.icons import Icon
 
-from ..records import RecordTable, shipped_records
 from ..rig.rig import Rig
 from ..solver.drive import Drive
 from ..solver.trace import Outcome, Trace

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from thermicon.icons.model.arguments import checked
+from thermicon.base.checks.arguments import checked
+from thermicon.base.files.inputs import named_text, shipped_names
+from thermicon.base.files.records import Record
 
-from ..inputs import named_text, shipped_names
-from ..records import Record
 from .devicefile import DeviceError, DrivenBy, read_device_table
 
 if TYPE_CHECKING:

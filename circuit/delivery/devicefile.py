@@ -5,11 +5,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError
 
-from thermicon.icons.near_words import did_you_mean
-from thermicon.icons.number_text import signed
+from thermicon.base.files.inputs import LONGEST_NAME, InputError, Place, key_faults, read_toml, shipped_table
+from thermicon.base.files.records import Record, RecordError
+from thermicon.base.words.near_words import did_you_mean
+from thermicon.base.words.number_text import signed
 
-from ..inputs import LONGEST_NAME, InputError, Place, key_faults, read_toml, shipped_table
-from ..records import Record, RecordError
 from ..rig.faults import KeyTable, Paragraph, Text
 
 

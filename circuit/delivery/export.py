@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from thermicon.icons.atomic import OutputError
+from thermicon.base.checks.arguments import checked
+from thermicon.base.files.atomic import OutputError
+from thermicon.base.files.inputs import InputError
+from thermicon.base.words.number_text import count_of
 from thermicon.icons.files.shipped import Icons, by_name
-from thermicon.icons.model.arguments import checked
-from thermicon.icons.number_text import count_of
 
-from ..inputs import InputError
 from ..rig.rig import AnyRig, Rig
 from .device import Device
 from .export_folder import HOW, check_export_folder, publish

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from thermicon.icons.atomic import MARK, OutputError, check_folder, kept_text, stopped_cleanly
+from thermicon.base.files.atomic import MARK, OutputError, check_folder, kept_text, stopped_cleanly
 
 CURE = "give a folder of its own"
 HOW = "replace=True replaces the folder"

@@ -6,9 +6,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.icons import Icon
 
-from ..arrays import Array
 from ..rig.rig import Rig
 from ..safety.gate import Gate, gate_set, gate_shown
 from ..solver.drive import Drive, duty_of, switched

@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..safety.checks import Check, Scenario

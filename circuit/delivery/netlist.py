@@ -10,10 +10,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from thermicon.icons.model.arguments import checked
+from thermicon.base.checks.arguments import checked
+from thermicon.base.files.inputs import InputError, shipped_text
+from thermicon.base.numbers.program import own_version
 
-from ..inputs import InputError, shipped_text
-from ..program import own_version
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import AnyRig, Rig
 from ..solver.drive import Drive

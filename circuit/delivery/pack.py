@@ -7,8 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from typing import Any
 
-from ..program import own_version, this_program
-from ..records import Record
+from thermicon.base.files.records import Record
+from thermicon.base.numbers.program import own_version, this_program
+
 from ..safety.demands import Demands
 from ..safety.verdict import summarise
 from .delivered_drive import DeliveredDrive, loss_table

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal
 
+from thermicon.base.checks.arguments import Changes, advised
+from thermicon.base.words.number_text import signed
 from thermicon.icons import Icon
-from thermicon.icons.model.arguments import Changes, advised
-from thermicon.icons.number_text import signed
 
 from ..rig.rig import Rig
 from ..safety.gate import Gate

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from thermicon.icons.number_text import signed
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.words.number_text import signed
 
-from ..arrays import Array
 from ..rig.rig import Rig
 from ..solver.drive import Drive
 from ..solver.inverse import Design

@@ -9,7 +9,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..solver.displayed import part_of
 from ..solver.modes import shown
 from .device import Device

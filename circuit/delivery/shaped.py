@@ -10,7 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import Array, Index
+from thermicon.base.numbers.arrays import Array, Index
+
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..safety.corners import corners_of

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..safety.checks import Check
 from ..safety.demands import CutOff
 from ..safety.held import SENSOR_K, Span, around_C

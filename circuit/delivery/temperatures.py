@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.icons import Icon
 
-from ..arrays import Array
 from ..rig.corner import with_gain
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError

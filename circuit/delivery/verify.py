@@ -4,7 +4,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from ..program import own_version, this_program
+from thermicon.base.numbers.program import own_version, this_program
+
 from ..safety.demands import DEMANDS
 from .export_folder import Claims, claims_of, table_of
 from .pack import digest, digest_of_content, sealed, sidecar_text

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..safety.corners import corners_of
 from ..safety.display import DisplayCourse
 from ..safety.gate import Gate

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
 
 MOST_UPDATES, WHOLE, FINE = 1.5, 0.02, 0.25
 """Rows farther apart than 1.5 updates of the driver miss some of them; closer ones meet every update where so many

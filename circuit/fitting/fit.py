@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from thermicon.icons.model.arguments import checked
+from thermicon.base.checks.arguments import checked
+from thermicon.base.numbers.cores import quiet_blas
 
-from ..cores import quiet_blas
 from ..rig.faults import PARAMETERS
 from ..rig.rig import AnyRig, Rig
 from .identify import identified, in_series, tellable

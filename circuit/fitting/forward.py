@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..solver.displayed import trace_of_display

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..rig.faults import unit_of
 from ..rig.rig import Rig
 from .keys import CONTACT, value_of

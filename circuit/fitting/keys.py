@@ -5,9 +5,9 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from thermicon.icons.near_words import did_you_mean, nearest_words
+from thermicon.base.files.inputs import InputError, shipped_table
+from thermicon.base.words.near_words import did_you_mean, nearest_words
 
-from ..inputs import InputError, shipped_table
 from ..rig.rig import Rig
 from ..rig.rigfile import rig_keys, unknown_key
 from ..rig.settings import flattened

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.icons.files.clock import order_fault
-from thermicon.icons.files.measured_table import measured, missing
-from thermicon.icons.files.table import read_table
-from thermicon.icons.files.units import like_units_of_time, unit_fault
-from thermicon.icons.near_words import nearest_words
+from thermicon.base.files.clock import order_fault
+from thermicon.base.files.inputs import read_bytes, table_fault
+from thermicon.base.files.measured_table import measured, missing
+from thermicon.base.files.table import read_table
+from thermicon.base.files.units import like_units_of_time, unit_fault
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.words.near_words import nearest_words
 
-from ..arrays import Array
-from ..inputs import read_bytes, table_fault
 from .keys import FitError
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..rig.uncertainty import Uncertainty
 from .between import MAD_TO_SD
 from .identify import FittedParameter

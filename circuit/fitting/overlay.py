@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..solver.trace import Trace

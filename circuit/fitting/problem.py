@@ -16,8 +16,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..arrays import Array
-from ..records import shipped_records
+from thermicon.base.files.records import shipped_records
+from thermicon.base.numbers.arrays import Array
+
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from .forward import Prediction, predict

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thermicon.icons.atomic import OutputError, complete_or_absent
-from thermicon.icons.drawn import Tabled
+from thermicon.base.files.atomic import OutputError, complete_or_absent
+from thermicon.base.files.inputs import LONGEST_NAME
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.numbers.program import own_version
+from thermicon.base.results.drawn import Tabled
 
-from ..arrays import Array
-from ..inputs import LONGEST_NAME
-from ..program import own_version
 from ..rig.rig import Rig
 from ..rig.settings import toml_text
 from ..rig.uncertainty import Uncertainty

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..solver.drive import Drive
 from .between import MOST_UPDATES, means, noise_sd, one_phase, tells_all, unknown_display
 from .log import DRIVES, Log, LogError

@@ -6,7 +6,8 @@ from typing import Literal
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from .between import MAD_TO_SD
 from .problem import FitProblem
 

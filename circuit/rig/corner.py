@@ -4,7 +4,7 @@ import json
 import math
 from dataclasses import replace
 
-from thermicon.icons.number_text import signed
+from thermicon.base.words.number_text import signed
 
 from .faults import sentence
 from .module import ZERO_C_IN_K, Peltier

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
-from ..inputs import one_line, paragraph, shipped_table
+from thermicon.base.files.inputs import one_line, paragraph, shipped_table
 
 PARAMETERS = ("seebeck_V_per_K", "resistance_ohm", "thermal_resistance_K_per_W")
 """The three parameters of a module in a rig file."""

@@ -4,7 +4,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ..records import Record, RecordError, RecordTable, shipped_records
+from thermicon.base.files.records import Record, RecordError, RecordTable, shipped_records
+
 from .faults import PARAMETERS, Unusual, sentence, unusual
 from .module import Datasheet, Extraction, Peltier, at_mean_C
 from .rigfile import ModuleTable

@@ -9,10 +9,10 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from thermicon.icons.atomic import OutputError, complete_or_absent
-from thermicon.icons.model.arguments import checked
+from thermicon.base.checks.arguments import checked
+from thermicon.base.files.atomic import OutputError, complete_or_absent
+from thermicon.base.files.inputs import named_text, shipped_names
 
-from ..inputs import named_text, shipped_names
 from .assemble import HeatPump, probes_of, pump_of, skin_of
 from .faults import sentence
 from .module import Peltier

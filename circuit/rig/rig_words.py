@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from thermicon.icons.number_text import signed
+from thermicon.base.files.records import shipped_records
+from thermicon.base.words.number_text import signed
 
-from ..records import shipped_records
 from .faults import Unusual, unit_of, unusual
 from .module import Extraction
 from .modules import build_of, module_names

@@ -6,9 +6,9 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BaseModel, Field, ValidationError
 
-from thermicon.icons.near_words import did_you_mean, nearest_words
+from thermicon.base.files.inputs import LONGEST_NAME, InputError, Place, key_faults, read_toml
+from thermicon.base.words.near_words import did_you_mean, nearest_words
 
-from ..inputs import LONGEST_NAME, InputError, Place, key_faults, read_toml
 from . import faults as kinds
 from .faults import CONTROLLED, PARAMETERS, KeyTable, sentence, unit_of
 from .module import Datasheet

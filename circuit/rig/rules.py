@@ -8,9 +8,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 
-from thermicon.icons.number_text import unit_text
+from thermicon.base.files.records import Record, RecordTable, shipped_records
+from thermicon.base.words.number_text import unit_text
 
-from ..records import Record, RecordTable, shipped_records
 from .faults import sentence
 
 SHORTEST_REASON, FEWEST_WORDS = 20, 4

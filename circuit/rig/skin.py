@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array
-from ..records import shipped_records
+from thermicon.base.files.records import shipped_records
+from thermicon.base.numbers.arrays import Array
+
 from .faults import sentence
 
 STRATUM_CORNEUM = "stratum corneum"

@@ -9,7 +9,8 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field
 
-from ..records import shipped_records
+from thermicon.base.files.records import shipped_records
+
 from .faults import KeyTable, Text, sentence
 from .rules import FEWEST_WORDS, SHORTEST_REASON, is_reason
 

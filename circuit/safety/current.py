@@ -15,7 +15,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..rig.rules import Limits
 from ..solver.batch_inputs import Bank, Intervals, State, run_on
 from ..solver.drive import Drive

@@ -15,7 +15,8 @@ from functools import cache
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..solver.modes import FELT, SkinModes, modes_of

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..arrays import Array, Index
+from thermicon.base.numbers.arrays import Array, Index
+
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..solver.batch_inputs import Bank, Intervals, State, cut, left_over, run_on

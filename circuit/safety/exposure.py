@@ -11,8 +11,8 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import Array
-from ..records import shipped_records
+from thermicon.base.files.records import shipped_records
+from thermicon.base.numbers.arrays import Array
 
 _KEPT = ("CEM43 start", "CEM43 reference", "CEM43 base at or above 43 °C", "CEM43 base from 37 to 43 °C")
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..rig.rules import Limits, Rule
 from .demands import Harm
 from .exposure import cem43_min, cem43_per_min

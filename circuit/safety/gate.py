@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thermicon.icons.model.arguments import checked
+from thermicon.base.checks.arguments import checked
+from thermicon.base.numbers.cores import quiet_blas
 
-from ..cores import quiet_blas
 from ..rig.rig import AnyRig, Rig
 from ..rig.rules import Limits
 from ..rig.uncertainty import Uncertainty, tightened

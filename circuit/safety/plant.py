@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..rig.rig import Rig
 from ..rig.rules import Limits
 from .checks import Check, Scenario, worst_of

@@ -20,8 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import Array
-from ..inputs import InputError
+from thermicon.base.files.inputs import InputError
+from thermicon.base.numbers.arrays import Array
+
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 from .ensemble import Ensemble, LaneDrives

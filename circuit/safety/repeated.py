@@ -10,8 +10,9 @@ from typing import Generic
 
 import numpy as np
 
-from ..arrays import Array
-from ..inputs import InputError
+from thermicon.base.files.inputs import InputError
+from thermicon.base.numbers.arrays import Array
+
 from ..rig.rules import Limits
 from .checks import Before, Check, Judged, Scenario, colour_of
 from .plant import RECOVERY_ROWS_S, GatePlay, Plant, Played, States, follow, left_s

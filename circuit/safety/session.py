@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING
 
-from thermicon.icons.drawn import Tabled
+from thermicon.base.results.drawn import Tabled
 
 from ..rig.rules import Limits
 from ..rig.uncertainty import Uncertainty

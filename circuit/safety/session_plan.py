@@ -9,10 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
+from thermicon.base.checks.arguments import checked
+from thermicon.base.files.inputs import InputError, read_text
 from thermicon.icons import IconSet
-from thermicon.icons.model.arguments import checked
-
-from ..inputs import InputError, read_text
 
 MOST_PLAYS = 5_000
 """More plays than fit into the longest session with icons of 2 s."""

@@ -15,13 +15,13 @@ from itertools import pairwise
 
 import numpy as np
 
+from thermicon.base.checks.arguments import checked
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.numbers.cores import quiet_blas
+from thermicon.base.words.near_words import did_you_mean
 from thermicon.icons import Icon
 from thermicon.icons.files.shipped import Icons, by_name
-from thermicon.icons.model.arguments import checked
-from thermicon.icons.near_words import did_you_mean
 
-from ..arrays import Array
-from ..cores import quiet_blas
 from ..rig.rig import AnyRig, Rig
 from ..rig.rules import Limits
 from ..solver.batch_inputs import bank_of, run_follow

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..solver.batch_inputs import State
 from .held import SENSOR_K, Span
 from .polarity import TEST_S

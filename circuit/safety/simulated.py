@@ -10,7 +10,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 from .ensemble import Ensemble, row_of

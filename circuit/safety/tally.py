@@ -9,7 +9,8 @@ from math import isnan
 
 import numpy as np
 
-from ..arrays import Array, Index
+from thermicon.base.numbers.arrays import Array, Index
+
 from ..rig.rules import Limits, Rule
 from .checks import AS_TOLD, LEVEL, Check, Scenario
 from .corners import Corner

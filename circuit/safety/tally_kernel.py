@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from ..compiled import kernel
+from thermicon.base.numbers.compiled import kernel
+
 from ..rig.module import ZERO_C_IN_K
 from .tally import BURN, DISPLAY, DOSE, RATE, SKIN
 

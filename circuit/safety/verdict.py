@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..rig.rules import Limits
 from ..solver.trace import Trace
 from .checks import Check, Judged

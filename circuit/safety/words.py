@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from math import isnan
 from typing import Any
 
-from thermicon.icons.number_text import signed, significant, unit_text
+from thermicon.base.files.inputs import shipped_table
+from thermicon.base.words.number_text import signed, significant, unit_text
 
-from ..inputs import shipped_table
 from ..rig.uncertainty import WORDS
 from .checks import Check, Cure, Scenario, cures_of, hard_of, hard_reason
 from .demands import Harm, SingleFault

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thermicon.base.checks.arguments import checked
+from thermicon.base.numbers.arrays import Array, Index
 from thermicon.icons import Icon
 from thermicon.icons.files.shipped import Icons, icons_of
-from thermicon.icons.model.arguments import checked
 
-from ..arrays import Array, Index
 from ..rig.rig import AnyRig, Rig
 from ..rig.rigfile import RigError
 from .batch_inputs import Bank, Intervals, cut, run_follow, run_forward, run_regulate

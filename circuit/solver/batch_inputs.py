@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, Index
-from ..cores import cores
+from thermicon.base.numbers.arrays import Array, Index
+from thermicon.base.numbers.cores import cores
+
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from .network import RECORDED, Network, network_of

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.icons import Icon
 
-from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError, Thermode
 from .inverse import baseline_C, steps_at, target_at

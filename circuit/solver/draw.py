@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from .trace import Trace
 
 if TYPE_CHECKING:

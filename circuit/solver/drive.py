@@ -11,12 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
-from thermicon.icons.files.measured_table import measured, missing
-from thermicon.icons.files.table import read_table
-from thermicon.icons.model.arguments import checked
+from thermicon.base.checks.arguments import checked
+from thermicon.base.files.inputs import InputError, read_bytes, table_fault
+from thermicon.base.files.measured_table import measured, missing
+from thermicon.base.files.table import read_table
+from thermicon.base.numbers.arrays import Array
 
-from ..arrays import Array
-from ..inputs import InputError, read_bytes, table_fault
 from ..rig.module import ZERO_C_IN_K, Peltier
 
 COLUMNS = ("time_s", "current_A")

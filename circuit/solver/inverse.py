@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from thermicon.base.checks.arguments import checked
+from thermicon.base.numbers.arrays import Array, Index
 from thermicon.icons import Icon
-from thermicon.icons.model.arguments import checked
 
-from ..arrays import Array, Index
 from ..rig.rig import AnyRig, Rig
 from .batch_inputs import Bank, bank_of, cut, run_follow, run_forward, run_regulate
 from .drive import Drive

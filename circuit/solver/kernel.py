@@ -20,7 +20,8 @@ import math
 
 import numpy as np
 
-from ..compiled import kernel
+from thermicon.base.numbers.compiled import kernel
+
 from ..rig.module import ZERO_C_IN_K
 from . import network as net
 

@@ -16,7 +16,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..arrays import Array, Index
+from thermicon.base.numbers.arrays import Array, Index
+
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..rig.skin import column_of

@@ -10,7 +10,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..arrays import Array, Index
+from thermicon.base.numbers.arrays import Array, Index
+
 from ..rig.rig import Rig
 from ..rig.skin import SkinColumn
 

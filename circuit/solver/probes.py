@@ -8,7 +8,8 @@ import math
 
 import numpy as np
 
-from ..arrays import Array, Index
+from thermicon.base.numbers.arrays import Array, Index
+
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from .modes import SkinModes

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from thermicon.base.checks.arguments import checked
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.words.number_text import significant
 from thermicon.icons import Icon
-from thermicon.icons.model.arguments import checked
-from thermicon.icons.number_text import significant
 
-from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import AnyRig, Rig
 from ..rig.rigfile import RigError

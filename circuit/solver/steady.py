@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import Array, Index
+from thermicon.base.numbers.arrays import Array, Index
+
 from ..rig.rig import Rig
 from .batch_inputs import Bank, on_all_cores
 from .network import COLD, HOT, RECORDED, SKIN

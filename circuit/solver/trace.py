@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arrays import Array
-from ..inputs import require_pyarrow
+from thermicon.base.files.inputs import require_pyarrow
+from thermicon.base.numbers.arrays import Array
+
 from ..rig.rules import Limits
 from .network import RECORDED
 

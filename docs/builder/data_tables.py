@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from table_text import markdown
 
-from thermicon.circuit.records import Record, shipped_records
+from thermicon.base.files.records import Record, shipped_records
+from thermicon.base.words.number_text import signed
 from thermicon.circuit.rig.rules import limit_table
 from thermicon.icons.files.catalogue import catalogue
-from thermicon.icons.number_text import signed
 
 HEADINGS = {"E0": "The file as a whole", "E1": "Words, numbers and units", "E2": "Meaning"}
 

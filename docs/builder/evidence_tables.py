@@ -11,7 +11,7 @@ from functools import partial
 
 from table_text import UNITS, markdown, number, signed, span
 
-from thermicon.circuit.records import Record
+from thermicon.base.files.records import Record
 from thermicon.perception.evidence.results import (
     UNMOVED_SD,
     judging_predictions,

@@ -14,7 +14,7 @@ import numpy as np
 from evidence_tables import TABLES as INFERRED
 from table_text import UNITS, markdown, number, signed, span
 
-from thermicon.perception.arrays import Array
+from thermicon.base.numbers.arrays import Array
 from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.evidence.results import UNMOVED_SD, OfRow, load_constants, read_rows
 from thermicon.perception.evidence.rows import load_rows

@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 from textwrap import indent
 
+from thermicon.base.words.near_words import nearest_words
+
 from ..language.parse import parse
 from ..model.errors import CueErrors, codes
-from ..near_words import nearest_words
 
 
 @dataclass(frozen=True, slots=True)

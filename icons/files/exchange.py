@@ -4,7 +4,8 @@ import json
 from dataclasses import fields
 from typing import Any
 
-from ..model.arguments import checked
+from thermicon.base.checks.arguments import checked
+
 from ..model.context import Metadata
 from ..model.family import Family
 from ..model.format import Holes

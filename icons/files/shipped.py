@@ -3,27 +3,25 @@
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib import resources
-from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from thermicon.base.checks.arguments import InputError, checked
+from thermicon.base.files.beside import beside
+
 from ..language.parse import parse
 from ..language.source import MOST_BYTES
-from ..model.arguments import InputError, checked
 from ..model.errors import whole_file
 from ..model.family import Family
 from ..model.icon import Icon
 from ..model.iconset import IconSet, UnknownIcon
 from ..model.words import nearest
-from ..near_words import nearest_words
-from .read_limited import bytes_of
+from .bytes_of import bytes_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
 FOLDER = resources.files("thermicon.icons").joinpath("library")
-MOST_LOOKED_AT = 1000
-"""Files of a folder among which a similar name is looked for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,20 +100,6 @@ def library() -> Library:
 def library_names() -> tuple[str, ...]:
     """Return the names of the shipped sets, which ``load_library`` and ``read_cue`` accept, sorted."""
     return tuple(sorted(entry.name.removesuffix(".cue") for entry in FOLDER.iterdir() if entry.name.endswith(".cue")))
-
-
-def beside(path: str | Path, ending: str = "") -> str:
-    """A file of the same folder with a similar name and ending, which may have been meant; empty without one."""
-    wanted = Path(path)
-    try:
-        there = [each for each in islice(wanted.parent.iterdir(), MOST_LOOKED_AT) if not each.name.startswith(".")]
-    except (OSError, ValueError):
-        return ""
-    suffix = wanted.suffix or ending
-    alike = [each for each in there if not suffix or nearest_words(suffix, [each.suffix], cutoff=0.7)]
-    names = {each.name if wanted.suffix else each.stem: each.name for each in alike}
-    close = nearest_words(wanted.name, names, cutoff=0.7)
-    return str(wanted.with_name(names[close[0]])) if close else ""
 
 
 @checked

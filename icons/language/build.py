@@ -7,7 +7,8 @@ from itertools import pairwise
 from math import prod
 from typing import Any, cast
 
-from ..model.clean_text import text_fault
+from thermicon.base.words.clean_text import text_fault
+
 from ..model.context import Metadata
 from ..model.family import FEWER, MOST_MEMBERS
 from ..model.parameter import Parameter, span_fault

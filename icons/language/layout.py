@@ -2,7 +2,8 @@
 
 from collections.abc import Iterable
 
-from ..model.arguments import checked
+from thermicon.base.checks.arguments import checked
+
 from ..model.format import header_lines
 from ..model.units import LONGEST_NUMBER
 from .parse import parse

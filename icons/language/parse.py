@@ -1,6 +1,7 @@
 """The parser: cue text to an icon set or to all its errors, each with a corrected line that was tested."""
 
-from ..model.arguments import checked
+from thermicon.base.checks.arguments import checked
+
 from ..model.errors import MOST_ERRORS, CueErrors, whole_file
 from ..model.iconset import IconSet
 from .assemble import analyse

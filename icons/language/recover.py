@@ -6,7 +6,8 @@ from functools import cache, lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from ..kinds_of_files import other_kind
+from thermicon.base.files.kinds_of_files import other_kind
+
 from ..model.errors import MOST_ERRORS, MOST_READ
 from ..model.words import VOCABULARY
 from .diagnose import diagnose

@@ -9,7 +9,8 @@ from functools import wraps
 from inspect import cleandoc, signature
 from typing import TYPE_CHECKING, TypeVar, cast
 
-from .arguments import InputError, checked
+from thermicon.base.checks.arguments import InputError, checked
+
 from .statements import (
     Bound,
     Current,

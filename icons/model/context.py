@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from typing import get_args
 
-from .clean_text import name_fault, text_fault
+from thermicon.base.words.clean_text import name_fault, text_fault
+
 from .units import Control, fault
 
 

@@ -7,9 +7,9 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
-from ..number_text import count_of
-from .arguments import InputError
-from .clean_text import clean
+from thermicon.base.checks.arguments import InputError
+from thermicon.base.words.clean_text import clean
+from thermicon.base.words.number_text import count_of
 
 # Characters of a line that an error shows.
 WIDEST = 110

@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from math import prod
 
-from ..drawn import Drawn
-from .clean_text import name_fault
+from thermicon.base.results.drawn import Drawn
+from thermicon.base.words.clean_text import name_fault
+
 from .context import Context, Metadata
 from .icon import Icon, rest_level
 from .members import HOLE, Expander, Extremes, check_family

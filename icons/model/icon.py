@@ -7,10 +7,11 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Self
 
-from ..drawn import Drawn
-from .arguments import checked
+from thermicon.base.checks.arguments import checked
+from thermicon.base.results.drawn import Drawn
+from thermicon.base.words.clean_text import name_fault
+
 from .check import ASSUMED_BASELINE_C, Problem, survey
-from .clean_text import name_fault
 from .context import Context, Metadata
 from .corners import Corners, Quantity, corners
 from .errors import CueError, CueErrors

@@ -7,10 +7,11 @@ from itertools import chain
 from pathlib import Path
 from typing import overload
 
-from ..atomic import complete_or_absent
-from ..drawn import Drawn
-from .arguments import InputError, checked
-from .clean_text import name_fault, text_fault
+from thermicon.base.checks.arguments import InputError, checked
+from thermicon.base.files.atomic import complete_or_absent
+from thermicon.base.results.drawn import Drawn
+from thermicon.base.words.clean_text import name_fault, text_fault
+
 from .context import Context, Metadata
 from .family import Family
 from .format import set_text

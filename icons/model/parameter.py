@@ -6,7 +6,8 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
-from .clean_text import name_fault
+from thermicon.base.words.clean_text import name_fault
+
 from .statements import Repeat, Statement
 from .units import KIND_WORDS, UNITS, Control, Kind, decimal_text, exact_number, fault
 

@@ -6,7 +6,8 @@ from fractions import Fraction
 from importlib import resources
 from typing import get_args
 
-from ..near_words import nearest_words
+from thermicon.base.words.near_words import nearest_words
+
 from .statements import Shape
 from .units import UNITS, Control, Kind, decimal_text, exact_number
 

@@ -9,7 +9,8 @@ from html import escape
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal
 
-from ..drawn import Drawn
+from thermicon.base.results.drawn import Drawn
+
 from ..model.family import Family
 from ..model.icon import Icon
 from ..model.iconset import IconSet

@@ -9,12 +9,13 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Literal
 
-from ..files.measured_table import measured, missing
-from ..files.read_limited import bytes_of
-from ..files.table import Table, read_table
-from ..files.units import like_units_of_time
-from ..model.arguments import InputError, checked
-from ..model.clean_text import name_fault
+from thermicon.base.checks.arguments import InputError, checked
+from thermicon.base.files.measured_table import measured, missing
+from thermicon.base.files.table import Table, read_table
+from thermicon.base.files.units import like_units_of_time
+from thermicon.base.words.clean_text import name_fault
+
+from ..files.bytes_of import bytes_of
 from ..model.context import Context
 from ..model.errors import CueErrors, whole_file
 from ..model.icon import Icon

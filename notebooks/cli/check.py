@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from thermicon.icons.atomic import OutputError, complete_or_absent
-from thermicon.icons.number_text import number, span
+from thermicon.base.files.atomic import OutputError, complete_or_absent
+from thermicon.base.words.number_text import number, span
 from thermicon.perception.criteria import MOST_ICONS
 
 from ..files.outputs import check_output

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from thermicon.icons.files.table_text import TABLES
-from thermicon.icons.number_text import count_of, number
+from thermicon.base.files.table_text import TABLES
+from thermicon.base.words.number_text import count_of, number
 from thermicon.perception.criteria import MOST_ICONS
 
 from ..figures.compare_figure import compare_figure
@@ -114,7 +114,7 @@ def kind_of(text: str, option: str) -> str:
         raise usage(f"{text} is the name of {both}; give the one you mean as a file", option)
     if Path(text).exists():
         raise usage(f"{text}: its name does not show what it is; {HOW}", option)
-    from thermicon.icons.near_words import did_you_mean
+    from thermicon.base.words.near_words import did_you_mean
 
     raise usage(f"{text} cannot be compared; {did_you_mean(text, (*rig_names(), *library_names()))} ({HOW})", option)
 

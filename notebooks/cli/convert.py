@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from thermicon.icons.atomic import OutputError
-from thermicon.icons.files.table_text import TABLES
-from thermicon.icons.number_text import number
+from thermicon.base.files.atomic import OutputError
+from thermicon.base.files.table_text import TABLES
+from thermicon.base.words.number_text import number
 
 from ..files.outputs import STDOUT, check_output
 from ..messages import fail, note, noted, usage

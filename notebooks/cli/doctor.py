@@ -62,7 +62,7 @@ def check_packages() -> Found:
 
 def check_cache() -> Found:
     """Look whether compiled code can be kept, and how much is kept."""
-    from thermicon.icons.cache_folder import NotPrivate, cache_folder, compiled_folder, private_folder
+    from thermicon.base.files.cache_folder import NotPrivate, cache_folder, compiled_folder, private_folder
 
     cache = cache_folder()
     try:

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from thermicon.base.checks.arguments import advised
+from thermicon.base.files.atomic import OutputError
+from thermicon.base.words.number_text import number
 from thermicon.circuit.delivery.export_folder import before_of, check_export_folder
-from thermicon.icons.atomic import OutputError
-from thermicon.icons.model.arguments import advised
-from thermicon.icons.number_text import number
 
 from ..files.exporting import felt_in, others
 from ..loading import DEFAULT_RIG

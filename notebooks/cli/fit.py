@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from thermicon.circuit.inputs import LONGEST_NAME
+from thermicon.base.files.inputs import LONGEST_NAME
 
 from ..files.outputs import check_output, check_separate
 from ..messages import note, usage

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from thermicon.icons.number_text import number, percent
+from thermicon.base.words.number_text import number, percent
 from thermicon.perception.selection.request import Objective
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate

@@ -12,8 +12,8 @@ from typing import Annotated
 
 import typer
 
-from thermicon.icons.atomic import check_folder, complete_or_absent, stopped_cleanly
-from thermicon.icons.installing import install
+from thermicon.base.files.atomic import check_folder, complete_or_absent, stopped_cleanly
+from thermicon.base.words.installing import install
 
 from ..messages import fail, interrupted, note, usage
 from .options import flag, opt

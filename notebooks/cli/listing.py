@@ -7,8 +7,8 @@ from typing import Annotated, Literal
 
 import typer
 
-from thermicon.icons.atomic import OutputError
-from thermicon.icons.number_text import number
+from thermicon.base.files.atomic import OutputError
+from thermicon.base.words.number_text import number
 
 from ..files.outputs import check_output
 from ..loading import load_rig
@@ -83,10 +83,10 @@ def copy_shipped(name: str, output: Path, changes: Sequence[str] = ()) -> None:
     """
     from importlib import resources
 
+    from thermicon.base.words.near_words import did_you_mean
     from thermicon.circuit.delivery.device import device_names
     from thermicon.circuit.rig.rig import rig_names
     from thermicon.icons.files.shipped import library_names
-    from thermicon.icons.near_words import did_you_mean
 
     from ..study.study_file import SHIPPED
 

@@ -108,7 +108,7 @@ class Commands(TyperGroup):
             place = f"{error.filename}: " if error.filename else ""
             fail(f"{place}{error.strerror or error}")
         except (EOFError, UnpicklingError):  # as numba reads what a crash of the machine left half-written
-            from thermicon.icons.cache_folder import cache_folder
+            from thermicon.base.files.cache_folder import cache_folder
 
             fail(f"machine code in {cache_folder() / 'compiled'} is damaged: delete this folder; it is made again")
         except RecursionError:
@@ -139,8 +139,8 @@ def reworded(error: Any) -> None:
 
     `error` is a bad parameter of the command line; others stay as they are.
     """
-    from thermicon.circuit.inputs import quoted
-    from thermicon.icons.near_words import nearest_words
+    from thermicon.base.files.inputs import quoted
+    from thermicon.base.words.near_words import nearest_words
 
     param, faults = getattr(error, "param", None), getattr(error.__cause__, "errors", None)
     if param is None or faults is None:

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
 
 import typer
 
-from thermicon.icons.atomic import complete_or_absent
-from thermicon.icons.near_words import nearest_words
+from thermicon.base.files.atomic import complete_or_absent
+from thermicon.base.words.near_words import nearest_words
 from thermicon.perception.criteria import MOST_ICONS
 
 from ..figures.style import SCREEN, Look, read_width_mm

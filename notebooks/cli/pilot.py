@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from thermicon.icons.atomic import OutputError, complete_or_absent
+from thermicon.base.files.atomic import OutputError, complete_or_absent
 
 from ..files.outputs import STDOUT, check_output, check_separate
 from ..messages import note, noted, progress_bar, usage

@@ -222,7 +222,7 @@ def read_workers(text: str | None) -> int | str | None:
 
 def _say_if_first() -> None:
     """Say, where somebody watches, that a first ranking compiles; an empty file beside the code remembers it."""
-    from thermicon.circuit.compiled import kept_in
+    from thermicon.base.numbers.compiled import kept_in
 
     folder = kept_in()
     if folder is not None and sys.stderr.isatty() and not (ranked := folder / "ranked").exists():

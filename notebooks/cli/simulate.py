@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from thermicon.icons.atomic import complete_or_absent
+from thermicon.base.files.atomic import complete_or_absent
 
 from ..figures.overview import FELT_TAIL_S, felt_overview
 from ..figures.session_figure import session_figure

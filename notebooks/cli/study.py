@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from thermicon.icons.number_text import count_of, number
+from thermicon.base.words.number_text import count_of, number
 
 from ..loading import warn_of_rig
 from ..messages import REFUSED, note, progress_bar
@@ -68,7 +68,7 @@ def study_command(
 
 def _check_free(folder: Path) -> None:
     """Raise OutputError for a folder that holds a study already; answers of participants are named."""
-    from thermicon.icons.atomic import OutputError
+    from thermicon.base.files.atomic import OutputError
 
     if not (folder / "study.json").is_file():
         return

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from thermicon.icons.model.arguments import checked
+from thermicon.base.checks.arguments import checked
 from thermicon.perception.ranking.swept import AGE, ALL, MEASURES, OF_95, SITE
 
 from ..files.outputs import TRACE_SUFFIXES, check_output, check_separate

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from thermicon.base.numbers.arrays import Array
     from thermicon.circuit import Export
-    from thermicon.circuit.arrays import Array
 
 FIRST = ("skin_C", "display_C", "cold_receptor_C", "warm_receptor_C", "heat_flow_skin_W_per_m2", "current_A")
 COLORS = {"cold_receptor_C": COOL, "warm_receptor_C": WARM}

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from thermicon.base.checks.arguments import checked
 from thermicon.circuit.solver.trace import Trace
-from thermicon.icons.model.arguments import checked
 
 from .set_figures import set_figure
 from .style import COOL, GREY, INK, LIMIT, PLACES, TARGET, WARM, new_figure, on_one_clock

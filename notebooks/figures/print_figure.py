@@ -15,7 +15,7 @@ from pathlib import Path
 from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any, cast
 
-from thermicon.icons.atomic import complete_or_absent
+from thermicon.base.files.atomic import complete_or_absent
 
 from .style import MM, NARROW_MM, SCREEN, Look
 

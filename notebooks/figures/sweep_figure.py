@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.base.checks.arguments import InputError
 from thermicon.circuit.rig.faults import name_of, unit_of
-from thermicon.icons.model.arguments import InputError
 from thermicon.perception.ranking.swept import ALL, MEASURES
 
 from .style import INK, SCREEN, Look, new_figure, plain

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
-from thermicon.circuit.inputs import read_bytes
-from thermicon.icons.atomic import OutputError, complete_or_absent
-from thermicon.icons.files.read_limited import NotRegular, TooLarge, read_limited
+from thermicon.base.files.atomic import OutputError, complete_or_absent
+from thermicon.base.files.inputs import read_bytes
+from thermicon.base.files.read_limited import NotRegular, TooLarge, read_limited
 
 from .outputs import check_output
 from .versions import Version, Versions

@@ -33,8 +33,8 @@ def felt_in(
     ``rest`` are the icons of the set that are not exported, ``warn`` takes what cannot be compared, ``tail_s`` is
     simulated after the last corner.
     """
+    from thermicon.base.files.inputs import InputError
     from thermicon.circuit.delivery.deliver import deliver, traces_until
-    from thermicon.circuit.inputs import InputError
     from thermicon.circuit.solver.simulate import duration_s
     from thermicon.perception.identification.delivered import PEOPLE, detected_as_delivered, judge_delivered
     from thermicon.perception.identification.population import TAIL_S, run_end_s

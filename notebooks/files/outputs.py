@@ -4,7 +4,7 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-from thermicon.icons.atomic import OutputError, check_inside
+from thermicon.base.files.atomic import OutputError, check_inside
 
 STDOUT = Path("-")
 TRACE_SUFFIXES = (".csv", ".parquet")
@@ -26,7 +26,7 @@ def check_output(path: Path, suffixes: Sequence[str], what: str) -> None:
         found = f"not {path.suffix}" if path.suffix else "and this name has no ending"
         raise OutputError(f"cannot write {path}: {what} is written as {offer}, {found}")
     if path.suffix.lower() == ".parquet":
-        from thermicon.circuit.inputs import require_pyarrow
+        from thermicon.base.files.inputs import require_pyarrow
 
         require_pyarrow(f"cannot write {path}", OutputError)
     check_inside(path, path.parent)

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from thermicon.circuit.arrays import Array
-from thermicon.circuit.inputs import read_bytes, table_fault
+from thermicon.base.checks.arguments import InputError
+from thermicon.base.files.inputs import read_bytes, table_fault
+from thermicon.base.files.measured_table import measured, missing
+from thermicon.base.files.table import read_table
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.words.near_words import did_you_mean
+from thermicon.base.words.number_text import number, span
 from thermicon.circuit.solver.trace import COLUMNS
-from thermicon.icons.files.measured_table import measured, missing
-from thermicon.icons.files.table import read_table
-from thermicon.icons.model.arguments import InputError
-from thermicon.icons.near_words import did_you_mean
-from thermicon.icons.number_text import number, span
 
 from ..messages import usage
 

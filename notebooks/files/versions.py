@@ -11,8 +11,8 @@ from typing import Annotated
 
 from pydantic import Field, TypeAdapter, ValidationError
 
-from thermicon.icons.atomic import OutputError, complete_or_absent
-from thermicon.icons.files.read_limited import NotRegular, TooLarge, read_limited
+from thermicon.base.files.atomic import OutputError, complete_or_absent
+from thermicon.base.files.read_limited import NotRegular, TooLarge, read_limited
 
 EVERY_S = 0.5
 """Shortest time between two writings of unsaved text, in s; a killed process loses what was typed for this long."""

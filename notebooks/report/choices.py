@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from thermicon.icons.number_text import count_of, listed, number, percent
+from thermicon.base.words.number_text import count_of, listed, number, percent
 from thermicon.perception.selection.goal import word_of
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from thermicon.icons.number_text import signed
+from thermicon.base.words.number_text import signed
 
 from .blocks import Block, Grid, Text, grid
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from thermicon.icons.number_text import listed
+from thermicon.base.words.number_text import listed
 
 if TYPE_CHECKING:
     from thermicon.perception import Goal

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from thermicon.icons.number_text import number, signed
+from thermicon.base.words.number_text import number, signed
 
 if TYPE_CHECKING:
     from thermicon.circuit.delivery.delivered_drive import DeliveredDrive

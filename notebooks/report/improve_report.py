@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from thermicon.icons.number_text import count_of, number, percent, percent_span
+from thermicon.base.words.number_text import count_of, number, percent, percent_span
 
 from .blocks import Block, Bullets, Heading, Text, grid
 from .choices import NAMES, goal_lines, laboratory, left_out, maximised

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thermicon.icons.number_text import percent, percent_span, signed
+from thermicon.base.words.number_text import percent, percent_span, signed
 
 from .blocks import Block, Bullets, Grid, Heading, Text, grid, printed_unit
 

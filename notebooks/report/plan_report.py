@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from thermicon.icons.number_text import number, percent, percent_span
+from thermicon.base.words.number_text import number, percent, percent_span
 
 from .blocks import Block, Grid, Text, grid
 

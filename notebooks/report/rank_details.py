@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from thermicon.icons.number_text import count_of, number, percent, percent_span
+from thermicon.base.words.number_text import count_of, number, percent, percent_span
 
 from .blocks import Block, Bullets, Heading
 from .choices import laboratory

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
-from thermicon.icons.number_text import number, percent
+from thermicon.base.words.number_text import number, percent
 
 from ..figures.print_figure import small_png
 from .blocks import Block, Bullets, Cell, Code, Facts, Heading, Picture, Text, as_html, grid

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from thermicon.icons.number_text import count_of, number, percent, percent_span, seconds
+from thermicon.base.words.number_text import count_of, number, percent, percent_span, seconds
 
 from .blocks import Block, Bullets, Cell, Facts, Grid, Heading, Text, grid, printed_unit
 from .choices import choice_lines, goal_lines, laboratory

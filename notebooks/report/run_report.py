@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from thermicon.icons.number_text import number, percent, span
+from thermicon.base.words.number_text import number, percent, span
 
 from ..files.trace_files import Aligned, differences, quantity, with_unit
 from .blocks import Block, Grid, Text, grid

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.icons.number_text import count_of, number, percent
+from thermicon.base.words.number_text import count_of, number, percent
 
 from .blocks import Block, Text, grid
 from .rank_details import trouble_lines

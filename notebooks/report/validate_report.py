@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from thermicon.icons.number_text import signed
+from thermicon.base.words.number_text import signed
 from thermicon.perception.evidence.results import (
     PredictedRow,
     judging_predictions,

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from thermicon.base.words.near_words import did_you_mean
+from thermicon.base.words.number_text import count_of
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import check_names
@@ -18,8 +20,6 @@ from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import Icon, IconSet, read_cue
 from thermicon.icons.model.context import Context, Metadata
 from thermicon.icons.model.statements import Hold, Ramp, Return
-from thermicon.icons.near_words import did_you_mean
-from thermicon.icons.number_text import count_of
 
 from .judging import JudgedStudy, Progress, judge_drives, judge_sessions
 from .schedule import Schedule, Trial, check_counts, check_session_time, courses_of, seed_of

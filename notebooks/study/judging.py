@@ -8,12 +8,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from thermicon.base.checks.arguments import advised
 from thermicon.circuit import Device, Export, Rig, Session, SessionPlan, export, play_session, simulate_current
 from thermicon.circuit.safety.exposure import cem43_min
 from thermicon.circuit.safety.playmap import UnjudgedError
 from thermicon.circuit.safety.sessionplay import WorstCase, drive_of, worst_case_of
 from thermicon.icons import Icon
-from thermicon.icons.model.arguments import advised
 
 from ..files.exporting import felt_in
 from .schedule import Schedule

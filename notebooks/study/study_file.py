@@ -13,8 +13,8 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
-from thermicon.circuit.inputs import LONGEST_NAME, InputError, Place, key_faults, one_line, read_text, read_toml
-from thermicon.icons.near_words import did_you_mean, nearest_words
+from thermicon.base.files.inputs import LONGEST_NAME, InputError, Place, key_faults, one_line, read_text, read_toml
+from thermicon.base.words.near_words import did_you_mean, nearest_words
 
 Line = Annotated[str, AfterValidator(one_line)]
 Name = Annotated[Line, Field(min_length=1, max_length=LONGEST_NAME)]

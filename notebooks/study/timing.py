@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Drive, Rig, design, simulate_current
-from thermicon.circuit.arrays import Array
 from thermicon.circuit.solver.inverse import baseline_C
 from thermicon.circuit.solver.modes import FELT, modes_of
 from thermicon.circuit.solver.network import SKIN

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from decimal import Decimal
 from typing import Any
 
+from thermicon.base.words.number_text import number
 from thermicon.icons import CueErrors, Icon
 from thermicon.icons.model.motion import periods_of
 from thermicon.icons.model.parameter import Path
 from thermicon.icons.model.statements import Wave
-from thermicon.icons.number_text import number
 from thermicon.perception.selection.candidate_edits import with_values
 
 from ..editing.cue_check import read_text

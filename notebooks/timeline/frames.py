@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermicon.icons.number_text import signed
+from thermicon.base.words.number_text import signed
 from thermicon.perception.sensation.received import uniform_clock
 
 from .scene import Drawing, Scene

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from thermicon.base.words.number_text import number, percent
 from thermicon.circuit import InputError, Rig, Trace, simulate
 from thermicon.circuit.safety.verdict import SafetyVerdict, judge_safety
 from thermicon.circuit.solver.inverse import baseline_C
 from thermicon.circuit.solver.simulate import duration_s
 from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import CueErrors, Icon
-from thermicon.icons.number_text import number, percent
 from thermicon.perception import Observer, Percept, perceive
 
 from ..editing.cue_check import MOST_NAMES, Reading, Trouble, read_text, trouble_of

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import ipywidgets as widgets
 
+from thermicon.base.files.atomic import OutputError
 from thermicon.circuit import Rig
 from thermicon.circuit.rig.rig import rig_names
 from thermicon.icons import Icon, IconSet, load_library, read_cue
-from thermicon.icons.atomic import OutputError
 from thermicon.icons.files.shipped import library_names
 
 from ..files.document import Document

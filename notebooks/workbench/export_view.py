@@ -10,11 +10,11 @@ from pathlib import Path
 
 import ipywidgets as widgets
 
+from thermicon.base.files.atomic import OutputError
+from thermicon.base.files.read_limited import NotRegular, TooLarge, read_limited
 from thermicon.circuit import Device, Export, Rig, export
 from thermicon.circuit.delivery.device import device_names
 from thermicon.circuit.delivery.formats import format_names, load_format
-from thermicon.icons.atomic import OutputError
-from thermicon.icons.files.read_limited import NotRegular, TooLarge, read_limited
 
 from ..editing.cue_check import read_text
 from ..figures.compare_figure import export_figure

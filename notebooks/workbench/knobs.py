@@ -5,12 +5,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
+from thermicon.base.words.number_text import number, span
 from thermicon.circuit import Rig
 from thermicon.circuit.rig.module import ZERO_C_IN_K
 from thermicon.circuit.rig.rig import rig_names
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.steady import steady_state
-from thermicon.icons.number_text import number, span
 from thermicon.perception.observer.observer import load_thresholds
 
 LIGHTEST_TIMES, FIRMEST_TIMES = 5.5, 0.5

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from thermicon.icons.number_text import percent
+from thermicon.base.words.number_text import percent
 from thermicon.perception import Goal, Ranking, rank
 from thermicon.perception.ranking.rank import with_intervals
 from thermicon.perception.selection.goal_result import judge_goal

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import cast
 
+from thermicon.base.words.number_text import number, percent
 from thermicon.circuit import Export
 from thermicon.circuit.delivery.prepare import Prepared
 from thermicon.circuit.safety.checks import Check
-from thermicon.icons.number_text import number, percent
 from thermicon.perception.identification.delivered import PerceivedChange
 from thermicon.perception.ranking.scores import PairScore
 from thermicon.perception.selection.edit import Edit, NoEdit

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from IPython import get_ipython
 
+from thermicon.base.checks.arguments import checked
+from thermicon.base.files.atomic import OutputError
 from thermicon.circuit import Rig, Trace
 from thermicon.icons import CueErrors, Icon, IconSet, parse
-from thermicon.icons.atomic import OutputError
-from thermicon.icons.model.arguments import checked
 from thermicon.icons.model.words import nearest
 from thermicon.perception import Percept
 from thermicon.perception.observer.observer_model import ObserverModel

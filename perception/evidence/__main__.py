@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
-from thermicon.circuit.cores import cores
-from thermicon.circuit.records import RecordError, dump_records
-from thermicon.icons.atomic import complete_or_absent
+from thermicon.base.files.atomic import complete_or_absent
+from thermicon.base.files.records import RecordError, dump_records
+from thermicon.base.numbers.cores import cores
 
 from ..observer.channels import VARIABLES
 from ..observer.draws_file import shipped_file, to_text

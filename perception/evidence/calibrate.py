@@ -6,8 +6,8 @@ Constants are those of the maximum, since no draw is near the middle of them all
 import math
 from dataclasses import replace
 
+from thermicon.base.files.records import Record, RecordTable
 from thermicon.circuit import Rig
-from thermicon.circuit.records import Record, RecordTable
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import steady_state
 

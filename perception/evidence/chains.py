@@ -21,10 +21,10 @@ from typing import Any
 
 import numpy as np
 
-from thermicon.circuit.cores import quiet_blas
-from thermicon.circuit.records import RecordError
+from thermicon.base.files.records import RecordError
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.numbers.cores import quiet_blas
 
-from ..arrays import Array
 from .posterior import Posterior
 from .surrogate import NARROW, WIDE, LimitFeatures, Surrogate, fit_surrogate
 

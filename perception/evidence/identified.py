@@ -14,10 +14,10 @@ from itertools import combinations
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
 from thermicon.icons import Icon
 
-from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised
 from ..identification.depths import rungs
 from ..identification.laboratory_draws import EVERY, people_for_intervals

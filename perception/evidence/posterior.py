@@ -17,7 +17,8 @@ from itertools import compress
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..experiments.laboratory import Laboratory
 from ..experiments.published import Predictions, predict
 from ..observer.channels import Variable

@@ -10,7 +10,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..experiments.laboratory import PEOPLE, SEED, Laboratory
 from ..experiments.measure import Setting
 from ..identification.laboratory_draws import DrawnLaboratories

@@ -8,10 +8,10 @@ from functools import partial
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
 from thermicon.circuit.solver.modes import thermode_modes
 
-from ..arrays import Array
 from ..identification.skin_alone import noticed_K
 from ..observer.channels import Variable
 from ..observer.observer import Observer, load_thresholds

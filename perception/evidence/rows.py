@@ -13,8 +13,8 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
-from thermicon.circuit.records import RecordError
-from thermicon.icons.near_words import did_you_mean
+from thermicon.base.files.records import RecordError
+from thermicon.base.words.near_words import did_you_mean
 
 from ..experiments.published import Key
 from ..experiments.tasks import DISCREPANCY, UNSTATED

@@ -13,9 +13,9 @@ from multiprocessing import get_context
 
 import numpy as np
 
-from thermicon.circuit.cores import quiet_blas
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.numbers.cores import quiet_blas
 
-from ..arrays import Array
 from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import APPROXIMATE, DrawsHeader
 from ..observer.priors import LABORATORIES, load_priors

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from thermicon.circuit.records import Record, RecordError, RecordTable
+from thermicon.base.files.records import Record, RecordError, RecordTable
 
 from ..observer.observer import DATA
 

@@ -9,9 +9,9 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from thermicon.circuit.records import RecordTable
-from thermicon.icons.drawn import Tabled
-from thermicon.icons.model.arguments import checked
+from thermicon.base.checks.arguments import checked
+from thermicon.base.files.records import RecordTable
+from thermicon.base.results.drawn import Tabled
 
 from ..identification.new_laboratory import DRAWS
 from ..observer.channels import VARIABLES, Variable
@@ -169,7 +169,7 @@ def validate(
     >>> validate(people=0)
     Traceback (most recent call last):
     ...
-    thermicon.icons.model.arguments.InputError: ...
+    thermicon.base.checks.arguments.InputError: ...
     """
     from .shown import collect_evidence
 
@@ -185,7 +185,7 @@ def assemble(
     evidence: ShownEvidence, table: RecordTable, people: int, draws: int, seed: int, trials: int
 ) -> ValidationReport:
     """Judge evidence that is there already by a table of published numbers."""
-    from thermicon.circuit.program import own_version
+    from thermicon.base.numbers.program import own_version
 
     sections = []
     for target in load_targets():

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from thermicon.icons.number_text import significant, unit_text
+from thermicon.base.words.number_text import significant, unit_text
 
 from .targets import MINUS, Published, TargetRow, plain
 

@@ -13,10 +13,10 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
 from thermicon.circuit.solver.modes import thermode_modes
 
-from ..arrays import Array
 from ..observer.channels import CHANNELS, Channel
 from ..observer.constants import Both
 from ..observer.mechanisms.summation import CM2

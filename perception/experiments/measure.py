@@ -12,10 +12,10 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from thermicon.base.checks.arguments import checked
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit.rig.rig import AnyRig, Rig
-from thermicon.icons.model.arguments import checked
 
-from ..arrays import Array
 from ..kernels.parallel import in_order
 from ..observer.channels import CHANNELS, Channel
 from ..observer.constants import BETWEEN_LABORATORIES, Both

@@ -9,7 +9,8 @@ from itertools import chain
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..observer.channels import CHANNELS, Channel
 from .laboratory import DT_S, Laboratory, samples_of
 from .tasks import DisplayRamp, Stimulated, yes_no_logs

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..observer.channels import SIGN, Channel
 from .laboratory import DT_S, FEEBLE, Corner, Laboratory, samples_of
 

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..kernels.parallel import in_order
 from ..observer.channels import MEMORY_FORMS, MemoryForm
 from ..observer.observer import Observer

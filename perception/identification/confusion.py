@@ -17,9 +17,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermicon.icons.model.arguments import checked
+from thermicon.base.checks.arguments import checked
+from thermicon.base.numbers.arrays import Array
 
-from ..arrays import Array
 from ..kernels.parallel import over_rows
 from ..observer.observer import Observer
 from ..sensation.detection import strata

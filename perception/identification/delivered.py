@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit.delivery.delivered_drive import loss_limit
 
-from ..arrays import Array
 from ..observer.channels import CHANNELS, USUAL_MEMORY, Channel
 from ..observer.observer import Observer
 from ..observer.people import draw_people

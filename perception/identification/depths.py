@@ -7,7 +7,8 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..observer.constants import Both
 from ..observer.observer import Observer
 

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermicon.icons.model.arguments import InputError
+from thermicon.base.checks.arguments import InputError
+from thermicon.base.numbers.arrays import Array
 
-from ..arrays import Array
 from ..kernels.parallel import over_rows
 from ..observer.channels import CHANNELS, Channel, MemoryForm
 from ..observer.observer import Observer

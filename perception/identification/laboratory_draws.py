@@ -14,9 +14,9 @@ from functools import cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from thermicon.circuit.records import RecordTable
+from thermicon.base.files.records import RecordTable
+from thermicon.base.numbers.arrays import Array
 
-from ..arrays import Array
 from ..kernels.parallel import in_order
 from ..observer.channels import MemoryForm, Variable
 from ..observer.constants import name_of

@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermicon.icons.drawn import Drawn
-
-from ..arrays import Array, own_arrays
+from thermicon.base.numbers.arrays import Array, own_arrays
+from thermicon.base.results.drawn import Drawn
 
 if TYPE_CHECKING:
     from ..ranking.ranking import Ranking

@@ -7,9 +7,8 @@ Published information is the plug-in estimate of a few dozen trials, which is bi
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermicon.icons.model.arguments import InputError, checked
-
-from ..arrays import Array
+from thermicon.base.checks.arguments import InputError, checked
+from thermicon.base.numbers.arrays import Array
 
 ROUNDED = 1e-3
 """Rows may miss 1 by this much, as proportions of three decimals do."""

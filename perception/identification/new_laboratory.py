@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
 from thermicon.icons import Icon
 
-from ..arrays import Array
 from ..observer.channels import MemoryForm
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People

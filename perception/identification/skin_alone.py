@@ -13,10 +13,10 @@ from statistics import NormalDist
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
 from thermicon.icons import Icon
 
-from ..arrays import Array
 from ..observer.channels import Channel
 from ..observer.observer import load_thresholds
 from ..observer.people import People, draw_people

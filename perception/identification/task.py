@@ -11,11 +11,11 @@ from statistics import NormalDist
 
 import numpy as np
 
+from thermicon.base.checks.arguments import checked
+from thermicon.base.files.records import Record, RecordTable
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
-from thermicon.circuit.records import Record, RecordTable
-from thermicon.icons.model.arguments import checked
 
-from ..arrays import Array
 from ..observer.channels import source_of
 from ..observer.constants import QUANTITIES
 from ..observer.mechanisms.memory import NOISE
@@ -124,7 +124,7 @@ class Task:
     >>> Task(gap_s=-1.0)
     Traceback (most recent call last):
     ...
-    thermicon.icons.model.arguments.InputError: Task: a gap of -1 s between icons must lie in 0 to 600 s
+    thermicon.base.checks.arguments.InputError: Task: a gap of -1 s between icons must lie in 0 to 600 s
     """
 
     gap_s: float | None = None

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from thermicon.circuit.compiled import kernel
+from thermicon.base.numbers.compiled import kernel
 
 from .episodes import CUT, INTENSITY, LENGTH, NOISE, ONSET, PAUSE, QUALITY, RATE, RISE
 

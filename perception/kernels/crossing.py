@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from thermicon.circuit.compiled import kernel
-from thermicon.circuit.vector_math import log1p
+from thermicon.base.numbers.compiled import kernel
+from thermicon.base.numbers.vector_math import log1p
 
 SQRT_HALF = math.sqrt(0.5)
 INV_SQRT_2PI = 1.0 / math.sqrt(2.0 * math.pi)

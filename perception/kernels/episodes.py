@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from thermicon.circuit.compiled import kernel
-from thermicon.circuit.vector_math import LEAST, exp, expm1, log, vectorised
+from thermicon.base.numbers.compiled import kernel
+from thermicon.base.numbers.vector_math import LEAST, exp, expm1, log, vectorised
 
 FEATURES = 10
 QUALITY, INTENSITY, RATE, LENGTH, PAUSE, NOISE, CUT, ONSET, START, RISE = range(FEATURES)

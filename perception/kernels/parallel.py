@@ -6,7 +6,7 @@ from contextvars import copy_context
 from itertools import pairwise
 from typing import TypeVar
 
-from thermicon.circuit.cores import at_most, cores, quiet_blas
+from thermicon.base.numbers.cores import at_most, cores, quiet_blas
 
 SMALL = 200_000
 MOST_THREADS = 8

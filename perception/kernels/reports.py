@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from thermicon.circuit.compiled import kernel
-from thermicon.circuit.vector_math import LEAST, exp, expm1, log1p, vectorised
+from thermicon.base.numbers.compiled import kernel
+from thermicon.base.numbers.vector_math import LEAST, exp, expm1, log1p, vectorised
 
 from .crossing import CERTAIN, survive
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import MISSING, Field, field, fields
 from typing import Any, Generic, NamedTuple, TypeVar
 
-from thermicon.circuit.records import Record, RecordTable
+from thermicon.base.files.records import Record, RecordTable
 
 from .channels import CHANNELS, Channel, Variable, source_of
 

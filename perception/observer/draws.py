@@ -14,10 +14,10 @@ from pathlib import Path
 
 import numpy as np
 
-from thermicon.circuit.records import RecordTable
-from thermicon.icons.near_words import did_you_mean
+from thermicon.base.files.records import RecordTable
+from thermicon.base.numbers.arrays import Array, own_arrays
+from thermicon.base.words.near_words import did_you_mean
 
-from ..arrays import Array, own_arrays
 from .channels import CHANNELS, Variable, check_variable
 from .constants import BETWEEN_LABORATORIES, name_of
 from .draws_file import DrawsHeader, read_draws, shipped_file

@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from thermicon.circuit.inputs import quoted, read_text
-from thermicon.circuit.records import RecordError
-from thermicon.icons.near_words import did_you_mean
+from thermicon.base.files.inputs import quoted, read_text
+from thermicon.base.files.records import RecordError
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.words.near_words import did_you_mean
 
-from ..arrays import Array
 from .channels import VARIABLES, Variable, check_variable
 from .constants import ANY, objection_to, ranges_of
 from .mechanisms.memory import MEMORY_NAMES

@@ -12,7 +12,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from thermicon.circuit.records import RecordError, RecordTable, load_records
+from thermicon.base.files.records import RecordError, RecordTable, load_records
 
 from .channels import CHANNELS, MEMORY_FORMS, VARIABLES, Channel, MemoryForm, Variable, check_variable, source_of
 from .constants import fields_from, objection_to, values_in, values_of

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal, Self, TypedDict, Unpack
 
-from thermicon.circuit.inputs import InputError
-from thermicon.circuit.records import RecordError, RecordTable
-from thermicon.icons.model.arguments import checked
+from thermicon.base.checks.arguments import checked
+from thermicon.base.files.inputs import InputError
+from thermicon.base.files.records import RecordError, RecordTable
 
 from .channels import CHANNELS, USUAL_MEMORY, VARIABLES, MemoryForm
 from .draws import PosteriorDraws

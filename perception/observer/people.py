@@ -12,11 +12,11 @@ from typing import Literal
 
 import numpy as np
 
+from thermicon.base.checks.arguments import checked
+from thermicon.base.files.records import Record, shipped_records
+from thermicon.base.numbers.arrays import Array, own_arrays
 from thermicon.circuit import Rig
-from thermicon.circuit.records import Record, shipped_records
-from thermicon.icons.model.arguments import checked
 
-from ..arrays import Array, own_arrays
 from .channels import CHANNELS, Channel
 from .constants import Both, record_of
 from .observer import Observer, load_thresholds, observer_records

@@ -15,7 +15,8 @@ from typing import Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from .channels import CHANNELS, Variable
 from .constants import names_of
 from .observer import Observer

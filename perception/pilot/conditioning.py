@@ -13,9 +13,9 @@ from typing import Any, ClassVar, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from thermicon.circuit.cores import quiet_blas
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.numbers.cores import quiet_blas
 
-from ..arrays import Array
 from ..experiments.measure import Setting
 from .likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights, walk
 from .measurement_likelihood import Emulator, SimulatedMeasurements, log_likelihood, predicted

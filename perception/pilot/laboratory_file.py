@@ -10,9 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from thermicon.circuit.records import Record, RecordTable, dump_records
+from thermicon.base.files.records import Record, RecordTable, dump_records
+from thermicon.base.numbers.arrays import Array
 
-from ..arrays import Array
 from ..observer.constants import BETWEEN_LABORATORIES, name_of, names_of
 from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import as_written, to_text

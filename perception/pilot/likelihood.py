@@ -27,7 +27,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from .playing import Confusions, Small
 
 AT_ONCE = 4_000_000

@@ -18,7 +18,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..experiments.laboratory import PEOPLE, SEED, Laboratory
 from ..experiments.measure import Condition, Setting, logs_of
 from ..experiments.tasks import DISCREPANCY, UNSTATED

@@ -13,13 +13,13 @@ from typing import cast
 
 import numpy as np
 
-from thermicon.circuit.inputs import quoted
+from thermicon.base.checks.arguments import checked
+from thermicon.base.files.inputs import quoted
+from thermicon.base.files.table import as_number
+from thermicon.base.numbers.arrays import Array, own_arrays
+from thermicon.base.words.near_words import nearest_words
 from thermicon.circuit.rig.rig import AnyRig, Rig
-from thermicon.icons.files.table import as_number
-from thermicon.icons.model.arguments import checked
-from thermicon.icons.near_words import nearest_words
 
-from ..arrays import Array, own_arrays
 from ..experiments.measure import ADAPTIVE, METHODS, UNITS, Condition, Kind
 from ..observer.channels import CHANNELS, Channel
 from .trials_file import TrialsError, check_labels, label, require, table_in

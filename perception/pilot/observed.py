@@ -10,12 +10,12 @@ from typing import Any, Generic, TypeVar, Unpack
 
 import numpy as np
 
-from thermicon.circuit.program import own_version
+from thermicon.base.checks.arguments import InputError, checked
+from thermicon.base.numbers.program import own_version
+from thermicon.base.results.drawn import Drawn, Tabled
 from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.icons import IconSet
-from thermicon.icons.drawn import Drawn, Tabled
 from thermicon.icons.files.shipped import Icons, set_of
-from thermicon.icons.model.arguments import InputError, checked
 
 from ..experiments.measure import Setting
 from ..kernels.parallel import Progress, step_counter

@@ -14,13 +14,13 @@ from typing import Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from thermicon.circuit.program import own_version
+from thermicon.base.checks.arguments import InputError, checked
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.numbers.program import own_version
+from thermicon.base.results.drawn import Tabled
 from thermicon.circuit.rig.rig import AnyRig, Rig
-from thermicon.icons.drawn import Tabled
 from thermicon.icons.files.shipped import Icons, set_of
-from thermicon.icons.model.arguments import InputError, checked
 
-from ..arrays import Array
 from ..kernels.parallel import Progress, step_counter
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from .observed import LEAST_DRAWS

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet
 
-from ..arrays import Array
 from ..identification.depths import rungs
 from ..identification.laboratory_draws import EVERY, people_for_intervals
 from ..identification.measures import information_bits

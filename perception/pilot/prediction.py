@@ -16,7 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..experiments.measure import Condition
 from ..identification.new_laboratory import COVER
 from .measurement_likelihood import SimulatedMeasurements, log_errors, person_covariance, shared_covariance

@@ -14,12 +14,12 @@ from pathlib import Path
 
 import numpy as np
 
+from thermicon.base.files.inputs import InputError, quoted, read_bytes
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.numbers.program import own_version
 from thermicon.circuit import Rig
-from thermicon.circuit.inputs import InputError, quoted, read_bytes
-from thermicon.circuit.program import own_version
 from thermicon.icons import IconSet
 
-from ..arrays import Array
 from ..identification.skin_alone import skin_alone
 from ..ranking.rank import digests_of
 from .prediction import EXPERIMENTS, share_as_far

@@ -13,9 +13,9 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
-from thermicon.circuit.records import RecordTable
+from thermicon.base.files.records import RecordTable
+from thermicon.base.numbers.arrays import Array
 
-from ..arrays import Array
 from ..identification.laboratory_draws import Uncertain, latin, memory_parameters
 from ..observer.channels import CHANNELS, MemoryForm
 from ..observer.constants import BETWEEN_LABORATORIES

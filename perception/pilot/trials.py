@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..arrays import Array, own_arrays
+from thermicon.base.numbers.arrays import Array, own_arrays
 
 
 @dataclass(frozen=True, slots=True)

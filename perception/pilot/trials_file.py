@@ -10,14 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
-from thermicon.circuit.inputs import InputError, line_fault, quoted, read_bytes, table_fault
+from thermicon.base.checks.arguments import checked
+from thermicon.base.files.inputs import InputError, line_fault, quoted, read_bytes, table_fault
+from thermicon.base.files.table import NOTHINGS, Table, as_number, read_table
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.words.near_words import did_you_mean, nearest_words
 from thermicon.icons import IconSet
 from thermicon.icons.files.shipped import set_of
-from thermicon.icons.files.table import NOTHINGS, Table, as_number, read_table
-from thermicon.icons.model.arguments import checked
-from thermicon.icons.near_words import did_you_mean, nearest_words
 
-from ..arrays import Array
 from .trials import Trials
 
 COLUMNS = ("participant", "trial", "presented", "responded")

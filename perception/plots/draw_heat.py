@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit.solver.draw import COOL, new_axes
 
-from ..arrays import Array
 from ..criteria import DISTINGUISHABLE_DPRIME
 
 if TYPE_CHECKING:

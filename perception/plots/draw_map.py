@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit.solver.draw import COOL, new_axes
 
-from ..arrays import Array
 from .draw_heat import short
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.base.checks.arguments import InputError
 from thermicon.circuit.solver.draw import COOL, WARM, new_axes
-from thermicon.icons.model.arguments import InputError
 
 from ..identification.map import PerceptualMap
 from ..pilot.observed import Observed
@@ -61,7 +61,7 @@ def plot(result: object, ax: Axes | None = None) -> Axes:
     --------
     >>> plot([1.0, 2.0])
     Traceback (most recent call last):
-    thermicon.icons.model.arguments.InputError: plot: result takes a Percept, ..., Observed or PerceptualMap, not a list
+    thermicon.base.checks.arguments.InputError: plot: result takes a Percept, ..., Observed or PerceptualMap, not a list
     """
     names = "a Percept, Ranking, PairScore, Sensitivity, Frontier, Observed or PerceptualMap"
     raise InputError(f"plot: result takes {names}, not a {type(result).__name__}")

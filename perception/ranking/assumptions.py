@@ -19,9 +19,9 @@ from typing import Any
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
 
-from ..arrays import Array
 from ..identification.laboratory_draws import LaboratoryDraws
 from ..observer.channels import CHANNELS
 from ..observer.mechanisms.site import on_forearm

@@ -11,13 +11,13 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array, own_arrays
+from thermicon.base.numbers.cores import cores
+from thermicon.base.numbers.program import DRIVES
+from thermicon.base.numbers.program import code_digest as digest_of
 from thermicon.circuit import Rig
-from thermicon.circuit.cores import cores
-from thermicon.circuit.program import DRIVES
-from thermicon.circuit.program import code_digest as digest_of
 from thermicon.icons import Icon
 
-from ..arrays import Array, own_arrays
 from ..identification.confusion import NAMED_SAMPLES, SAMPLES, normalised, sampling_error
 from ..identification.measures import experiments_bits, information_bits
 from ..identification.population import (

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import Any, cast
 
-from thermicon.icons.installing import install
+from thermicon.base.words.installing import install
 
 from .batches import BatchResult, Job, code_digest, run
 
@@ -86,7 +86,7 @@ def _quiet() -> Iterator[None]:
 
 def _run(job: Job, number: int) -> tuple[str, BatchResult]:
     """Runs on a worker: the hash of its code, and the batch."""
-    from thermicon.circuit.cores import at_most, quiet_blas
+    from thermicon.base.numbers.cores import at_most, quiet_blas
 
     with at_most(1), quiet_blas():
         return code_digest(), run(job, number)

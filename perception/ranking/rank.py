@@ -7,11 +7,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Unpack
 
-from thermicon.circuit.program import own_version
+from thermicon.base.checks.arguments import checked
+from thermicon.base.numbers.program import own_version
 from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.icons import IconSet
 from thermicon.icons.files.shipped import Icons, set_of
-from thermicon.icons.model.arguments import checked
 
 from ..identification.carry_over import prepare_task
 from ..identification.new_laboratory import DRAWS, Nominal, new_laboratory

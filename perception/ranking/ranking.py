@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from thermicon.icons.drawn import Drawn, Tabled
-from thermicon.icons.number_text import count_of
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.results.drawn import Drawn, Tabled
+from thermicon.base.words.number_text import count_of
 
-from ..arrays import Array
 from ..identification.carry_over import CarryOver
 from ..identification.map import PerceptualMap
 from ..identification.new_laboratory import NewLaboratory, interval_of

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.icons.number_text import decimals, fixed, verdict
+from thermicon.base.numbers.arrays import held
+from thermicon.base.words.number_text import decimals, fixed, verdict
 
-from ..arrays import held
 from ..identification.episodes import PARTS, Episode, Episodes, distance_shares
 from ..observer.channels import CHANNELS, Channel, MemoryForm
 from ..observer.observer import Observer

@@ -12,8 +12,8 @@ from functools import lru_cache
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
-from thermicon.circuit.records import Record, RecordTable, load_records
-from thermicon.icons.number_text import significant, unit_text
+from thermicon.base.files.records import Record, RecordTable, load_records
+from thermicon.base.words.number_text import significant, unit_text
 
 from ..observer.observer import CHANNELS, DATA, Channel
 from ..sensation import features

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermicon.icons.number_text import decimals, significant
+from thermicon.base.words.number_text import decimals, significant
 
 from ..criteria import DISTINGUISHABLE_DPRIME, FELT_FROM
 from ..identification.episodes import Episodes, remembered

@@ -19,13 +19,13 @@ from typing import Any, Unpack
 
 import numpy as np
 
+from thermicon.base.checks.arguments import checked
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.results.drawn import Drawn, Tabled
 from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.icons import Icon
-from thermicon.icons.drawn import Drawn, Tabled
 from thermicon.icons.files.shipped import Icons, set_of
-from thermicon.icons.model.arguments import checked
 
-from ..arrays import Array
 from ..identification.depths import rungs
 from ..identification.laboratory_draws import LaboratoryDraws, Uncertain, laboratory_draws, latin
 from ..identification.population import ReceptorTemperatures, run_end_s
@@ -199,7 +199,7 @@ def sensitivity(
     >>> sensitivity(read_cue("six-icons"), Rig.load("thenar"), draws=3)
     Traceback (most recent call last):
     ...
-    thermicon.icons.model.arguments.InputError: sensitivity: a sensitivity needs 64 to 1000 draws of the posterior, ...
+    thermicon.base.checks.arguments.InputError: sensitivity: a sensitivity needs 64 to 1000 draws of the posterior, ...
     """
     from thermicon.circuit.solver.simulate import duration_s
 

@@ -8,13 +8,13 @@ from typing import Any, Unpack
 
 import numpy as np
 
+from thermicon.base.checks.arguments import InputError, checked
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import Icon
 from thermicon.icons.files.shipped import Icons, icons_of
-from thermicon.icons.model.arguments import InputError, checked
 
-from ..arrays import Array
 from ..identification.measures import information_bits, proportion_correct
 from ..identification.population import RATE_HZ, PopulationResponse, ReceptorTemperatures, identify, respond, run_end_s
 from ..identification.task import USUAL, Task

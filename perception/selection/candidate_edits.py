@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit.solver.inverse import baseline_C
 from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import CueErrors, Icon
@@ -21,7 +22,6 @@ from thermicon.icons.model.format import statement_text
 from thermicon.icons.model.icon import all_played
 from thermicon.icons.model.statements import Repeat, Total
 
-from ..arrays import Array
 from ..identification.population import run_end_s
 from ..observer.observer import MemoryForm, Observer
 from ..ranking.scores import objection

@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
+from thermicon.base.words.number_text import number
 from thermicon.circuit import Rig
 from thermicon.icons import CueErrors, Family, Icon, IconSet
 from thermicon.icons.model.context import Metadata
 from thermicon.icons.model.parameter import Parameter
 from thermicon.icons.model.statements import Repeat
-from thermicon.icons.number_text import number
 
 MOVED = 0.5
 FOUND = "found by search"

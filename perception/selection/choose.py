@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from thermicon.icons.model.arguments import checked
+from thermicon.base.checks.arguments import checked
 
 from ..identification.carry_over import CarryOver, task_among
 from ..identification.new_laboratory import DRAWS, NewLaboratory, Nominal, new_laboratory

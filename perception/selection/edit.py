@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 
+from thermicon.base.checks.arguments import InputError, checked
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.words.near_words import did_you_mean
 from thermicon.icons import Icon, parse
-from thermicon.icons.model.arguments import InputError, checked
-from thermicon.icons.near_words import did_you_mean
 
-from ..arrays import Array
 from ..criteria import DISTINGUISHABLE_DPRIME
 from ..identification.carry_over import prepare_task
 from ..identification.population import memory_dprime, run_end_s

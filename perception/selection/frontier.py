@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Unpack
 
+from thermicon.base.checks.arguments import checked
+from thermicon.base.results.drawn import Drawn, Tabled
 from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import IconSet
-from thermicon.icons.drawn import Drawn, Tabled
 from thermicon.icons.files.shipped import Icons, set_of
-from thermicon.icons.model.arguments import checked
 
 from ..identification.new_laboratory import DRAWS
 from ..identification.population import run_end_s

@@ -12,8 +12,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from thermicon.icons.model.arguments import InputError, checked
-from thermicon.icons.near_words import did_you_mean
+from thermicon.base.checks.arguments import InputError, checked
+from thermicon.base.words.near_words import did_you_mean
 
 from ..criteria import FELT_FROM
 from .request import Objective

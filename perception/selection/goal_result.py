@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from thermicon.icons.model.arguments import checked
-from thermicon.icons.number_text import listed
+from thermicon.base.checks.arguments import checked
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.words.number_text import listed
 
-from ..arrays import Array
 from ..ranking.batches import FeltResult
 from ..ranking.ranking import Ranking
 from .choose import Choice

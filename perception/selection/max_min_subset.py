@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from .request import UndecidedError
 
 MOST_STEPS = 20_000

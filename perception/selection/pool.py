@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array, held
 from thermicon.circuit import Rig, Trace
 from thermicon.circuit.solver.inverse import baseline_C
 from thermicon.circuit.solver.simulate import duration_s, simulate_all
 from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import Icon
 
-from ..arrays import Array, held
 from ..criteria import FELT_FROM
 from ..identification.episodes import dprimes_from_memory
 from ..identification.population import run_end_s

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from thermicon.icons.model.arguments import InputError, checked
-from thermicon.icons.near_words import did_you_mean
-from thermicon.icons.number_text import count_of
+from thermicon.base.checks.arguments import InputError, checked
+from thermicon.base.words.near_words import did_you_mean
+from thermicon.base.words.number_text import count_of
 
 Objective = Literal["worst", "felt-and-named", "named", "bits", "bits-per-s"]
 

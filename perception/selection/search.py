@@ -14,12 +14,12 @@ from typing import Unpack
 
 import numpy as np
 
+from thermicon.base.checks.arguments import checked
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.icons import Icon, IconSet
 from thermicon.icons.files.shipped import Icons, set_of
-from thermicon.icons.model.arguments import checked
 
-from ..arrays import Array
 from ..identification.new_laboratory import DRAWS
 from ..kernels.parallel import Progress
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
 from thermicon.icons import Icon, IconSet
 from thermicon.icons.model.icon import played_icons
 
-from ..arrays import Array
 from ..identification.population import ReceptorTemperatures, memory_dprime, respond
 from ..identification.task import USUAL
 from ..observer.observer import MemoryForm, Observer

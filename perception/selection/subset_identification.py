@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermicon.circuit.compiled import kernel
-from thermicon.circuit.cores import quiet_blas
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.numbers.compiled import kernel
+from thermicon.base.numbers.cores import quiet_blas
 
-from ..arrays import Array
 from ..identification.confusion import embed
 from .goal import GoalPart
 from .max_min_subset import SubsetChoice, Totals, max_min_subset

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..observer.channels import SIGN, Channel
 from ..observer.constants import Both
 from ..observer.observer import Observer

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.circuit.records import Record, RecordTable, load_records
-from thermicon.icons.number_text import significant
+from thermicon.base.files.records import Record, RecordTable, load_records
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.words.number_text import significant
 
-from ..arrays import Array
 from ..observer.observer import DATA
 
 if TYPE_CHECKING:

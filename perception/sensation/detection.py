@@ -17,7 +17,8 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import Array, as_rows
+from thermicon.base.numbers.arrays import Array, as_rows
+
 from ..criteria import FELT_FROM
 from ..kernels.parallel import over_rows
 from ..observer.observer import CHANNELS, Channel, Observer

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermicon.icons.drawn import Drawn
-from thermicon.icons.model.arguments import checked
+from thermicon.base.checks.arguments import checked
+from thermicon.base.numbers.arrays import Array, held, own_arrays
+from thermicon.base.results.drawn import Drawn
 
-from ..arrays import Array, held, own_arrays
 from ..criteria import FELT_FROM
 from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer

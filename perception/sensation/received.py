@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..observer.channels import CHANNELS, receptor_column
 from ..observer.constants import Both
 from ..observer.observer import Observer

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Drive, Rig
-from thermicon.circuit.arrays import Array
 from thermicon.circuit.rig.module import ZERO_C_IN_K
 from thermicon.circuit.solver.network import COLD, HOT, SKIN, network_of
 from thermicon.circuit.solver.steady import state_under_current

@@ -6,8 +6,8 @@ from scipy.sparse import coo_matrix, diags
 from scipy.sparse.linalg import splu
 
 from source_paper.insulated import Pad
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Drive, Rig, Trace, simulate, simulate_current
-from thermicon.circuit.arrays import Array
 from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")

@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.stats import norm
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.perception import Observer
-from thermicon.perception.arrays import Array
 from thermicon.perception.sensation.detection import quarters
 
 

@@ -3,7 +3,7 @@
 import re
 from importlib import import_module
 
-from thermicon.icons.near_words import did_you_mean
+from thermicon.base.words.near_words import did_you_mean
 from .form import Format, FormatError
 
 MODULES = {

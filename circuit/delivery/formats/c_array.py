@@ -11,10 +11,10 @@ from hashlib import sha256
 
 import numpy as np
 
-from thermicon.icons.model.clean_text import clean_line
+from thermicon.base.files.inputs import shipped_text
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.words.clean_text import clean_line
 
-from ...arrays import Array
-from ...inputs import shipped_text
 from ...safety.demands import Demands, HeldCutOff
 from ..delivered_drive import DeliveredDrive
 from .form import (

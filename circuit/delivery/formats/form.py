@@ -7,11 +7,11 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
-from thermicon.icons.installing import install
+from thermicon.base.files.inputs import InputError
+from thermicon.base.numbers.arrays import Array
+from thermicon.base.words.installing import install
 from thermicon.icons.model.corners import Corners
 
-from ...arrays import Array
-from ...inputs import InputError
 from ...safety.demands import Demands, How
 from ...solver.inverse import baseline_C
 from ...solver.steady import steady_state

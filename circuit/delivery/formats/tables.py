@@ -11,7 +11,8 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ...arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..delivered_drive import DeliveredDrive, ModuleDrive, ThermodeDrive
 from ..device import Device
 from ..setpoints import Setpoints

@@ -9,7 +9,8 @@ import wave
 
 import numpy as np
 
-from ...program import own_version
+from thermicon.base.numbers.program import own_version
+
 from ..delivered_drive import DeliveredDrive
 from ..device import Device
 from .form import PLAYS_SAMPLES, PLAYS_TEMPERATURES, Column, Format, FormatError, samples_of

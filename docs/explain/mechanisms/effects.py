@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import ndtri
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit.solver.modes import thermode_modes
-from thermicon.perception.arrays import Array
 from thermicon.perception.experiments.laboratory import Corner, course_of, load_rig
 from thermicon.perception.observer.channels import CHANNELS, SIGN, Channel
 from thermicon.perception.observer.mechanisms.bounds import NO_LIMIT_C

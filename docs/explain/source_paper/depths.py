@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thermicon.circuit.arrays import Array
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit.rig.parts import Probe
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.solver.drive import Drive

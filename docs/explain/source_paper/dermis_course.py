@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.arrays import Array
+from thermicon.base.numbers.arrays import Array
 
 from .depths import probe_depths
 from .paper import TAIL_S, cooling_step, dermis_change, emulator_rig, printed, thermistors

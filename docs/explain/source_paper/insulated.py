@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from thermicon.circuit.arrays import Array, Index
-from thermicon.circuit.cores import quiet_blas
-from thermicon.circuit.records import load_records
+from thermicon.base.files.records import load_records
+from thermicon.base.numbers.arrays import Array, Index
+from thermicon.base.numbers.cores import quiet_blas
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.skin import SkinColumn, column_of
 from thermicon.circuit.solver.modes import SkinModes

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 
-from thermicon.circuit.arrays import Array
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.rig.skin import CELL_GROWTH, FIRST_CELL_M, column_of

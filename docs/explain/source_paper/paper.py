@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from thermicon.circuit.arrays import Array
-from thermicon.circuit.records import RecordTable, load_records
+from thermicon.base.files.records import RecordTable, load_records
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.simulate import simulate

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..channels import Channel
 from ..constants import Both, constant
 from .mechanism import Mechanism

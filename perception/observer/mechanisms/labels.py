@@ -3,7 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from ...arrays import Array
+from thermicon.base.numbers.arrays import Array
+
 from ..channels import Channel
 from ..constants import SHARE, constant
 from .mechanism import Mechanism

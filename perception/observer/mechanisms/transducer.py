@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...arrays import Array, as_rows
+from thermicon.base.numbers.arrays import Array, as_rows
+
 from ...kernels.parallel import over_rows
 from ..channels import Channel
 from ..constants import constant

@@ -14,12 +14,12 @@ import pytest
 from tests.circuit.delivery.one_drive import changed, icon_of, prepare
 from tests.circuit.surerig import sure_rig
 from tests.circuit.verdicts import GreenVerdict
+from thermicon.base.numbers.program import code_digest
 from thermicon.circuit import Device, InputError, Rig, export
 from thermicon.circuit.delivery.export import ExportError
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import NO_CLEARANCE, pack, sidecar_text
 from thermicon.circuit.delivery.prepare import Prepared, Refusal, refusals_of
-from thermicon.circuit.program import code_digest
 from thermicon.icons import load_library, parse
 
 RIG, SURE = Rig.load("thenar"), sure_rig()

@@ -5,13 +5,13 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from thermicon.base.numbers.program import own_version
 from thermicon.circuit import Rig, fit
 from thermicon.circuit.fitting.identify import FittedParameter
 from thermicon.circuit.fitting.keys import FitError, free_keys, value_of
 from thermicon.circuit.fitting.log import Log
 from thermicon.circuit.fitting.rig_fit import RigFit, uncertainties
 from thermicon.circuit.fitting.synthetic_log import synthetic_log, write_log
-from thermicon.circuit.program import own_version
 from thermicon.circuit.safety.corners import corners_of
 
 from .conftest import TRUTH

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.arrays import Array
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.safety.corners import Corner
 from thermicon.circuit.safety.current import without_power

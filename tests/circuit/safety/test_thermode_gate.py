@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tests.circuit.delivery.one_drive import worst_case
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Device, Limits, Rig
-from thermicon.circuit.arrays import Array
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.setpoints import Setpoints, display_of, lag_of
 from thermicon.circuit.delivery.worstcase import ways_of, worst_cases

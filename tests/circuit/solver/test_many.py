@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
+from thermicon.base.numbers.cores import at_most
 from thermicon.circuit import Drive, Rig, design, simulate, simulate_current, simulate_many
-from thermicon.circuit.cores import at_most
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver import batch
 from thermicon.circuit.solver.inverse import design_many

@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 
 from tests.circuit.solver.watching import watch
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Drive, Rig, Trace, simulate, simulate_current
-from thermicon.circuit.arrays import Array
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import flow_weights, places_of, stacked, temperature_weights

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tests.builders import messages
+from thermicon.base.files.inputs import InputError
 from thermicon.circuit import Drive, Rig, Trace, read_drive, simulate, simulate_current
-from thermicon.circuit.inputs import InputError
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.draw import plot_current
 from thermicon.circuit.solver.drive import DriveError

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array, Index
 from thermicon.circuit import Drive, Rig, Trace, simulate_current
-from thermicon.circuit.arrays import Array, Index
 from thermicon.circuit.solver.batch_inputs import bank_of, cut, run_forward
 from thermicon.circuit.solver.network import RECORDED, network_of
 from thermicon.circuit.solver.steady import state_under_current

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tests.builders import few_draws
-from thermicon.icons.number_text import percent_span
+from thermicon.base.words.number_text import percent_span
 from thermicon.notebooks.cli import ranking
 from thermicon.notebooks.cli.options import CrowdOptions, RigOptions, commands
 from thermicon.notebooks.report.following import after_ranking
@@ -146,7 +146,7 @@ def test_a_set_that_asks_too_much_says_the_worst_in_twenty_lines(cli: Cli, tmp_p
 def test_a_first_ranking_says_once_on_a_terminal_that_it_compiles(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    monkeypatch.setattr("thermicon.circuit.compiled.kept_in", lambda: tmp_path)
+    monkeypatch.setattr("thermicon.base.numbers.compiled.kept_in", lambda: tmp_path)
     ranking._say_if_first()
     assert capsys.readouterr().err == ""
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)

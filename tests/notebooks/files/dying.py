@@ -17,8 +17,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from thermicon.base.files.atomic import OutputError
 from thermicon.circuit.delivery.export_folder import claims_of, publish
-from thermicon.icons.atomic import OutputError
 
 EVENTS = ("mkdir", "open", "write", "fsync", "rename", "unlink", "rmdir", "chmod", "close")
 

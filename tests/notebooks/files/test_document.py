@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.icons.atomic import OutputError
+from thermicon.base.files.atomic import OutputError
 from thermicon.notebooks.files.document import MOST_STEPS, Document, History, HistoryStep
 from thermicon.notebooks.files.versions import EVERY_S, MOST, MOST_LETTERS, Version, Versions
 

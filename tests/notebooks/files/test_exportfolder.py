@@ -14,8 +14,8 @@ import pytest
 
 from tests.circuit.surerig import SURE
 from tests.notebooks.files.dying import CASES, NEW, OLD, drive
+from thermicon.base.files.atomic import OutputError
 from thermicon.circuit.delivery.export_folder import check_export_folder, publish
-from thermicon.icons.atomic import OutputError
 
 DYING = Path(__file__).with_name("dying.py")
 STAGE = ".drives.thermicon-part"

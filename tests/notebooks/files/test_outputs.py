@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.icons.atomic import OutputError, check_folder, complete_or_absent
+from thermicon.base.files.atomic import OutputError, check_folder, complete_or_absent
 from thermicon.notebooks.files.outputs import STDOUT, TRACE_SUFFIXES, check_output
 
 

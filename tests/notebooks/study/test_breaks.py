@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tests.circuit.surerig import sure_rig
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Drive, Export, Rig, SessionPlan, simulate_current
-from thermicon.circuit.arrays import Array
 from thermicon.circuit.safety.sessionplay import SessionDrive, drive_of, worst_case_of
 from thermicon.icons import load_library
 from thermicon.notebooks.study.judging import JudgedStudy, StudyRefused, _extreme, _farthest, judge_sessions

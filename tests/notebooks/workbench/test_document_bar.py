@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from tests.notebooks.workbench.openbench import TEXT, TYPED, opened, said, title
+from thermicon.base.files.atomic import OutputError
 from thermicon.circuit import Rig
-from thermicon.icons.atomic import OutputError
 from thermicon.notebooks.workbench.document_bar import DocumentBar
 
 

@@ -9,8 +9,8 @@ import pytest
 from tests.builders import missing
 from tests.circuit.surerig import sure_rig
 from tests.notebooks.workbench.openbench import wait
+from thermicon.base.files.atomic import OutputError
 from thermicon.icons import parse
-from thermicon.icons.atomic import OutputError
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.export_view import ExportView
 from thermicon.perception import rank

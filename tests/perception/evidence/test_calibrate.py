@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import pytest
 
-from thermicon.circuit.records import Record, RecordError, RecordTable, dump_records, load_records
+from thermicon.base.files.records import Record, RecordError, RecordTable, dump_records, load_records
 from thermicon.perception.evidence.calibrate import COMMENT, calibrate
 from thermicon.perception.evidence.results import load_constants
 from thermicon.perception.observer.channels import VARIABLES, source_of

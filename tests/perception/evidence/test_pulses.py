@@ -9,13 +9,13 @@ import pytest
 from typer.testing import CliRunner
 
 from tests.builders import dprime_from_memory, population_dprime
+from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.solver.simulate import simulate_all
 from thermicon.icons import IconSet, load_library, read_cue
 from thermicon.icons.language.parse import parse
 from thermicon.notebooks.cli.main import app
 from thermicon.perception import Observer, perceive
-from thermicon.perception.arrays import Array
 from thermicon.perception.evidence.pulses import short_pulses
 from thermicon.perception.identification.carry_over import carry_over
 from thermicon.perception.identification.confusion import embed

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.circuit.records import RecordError
+from thermicon.base.files.records import RecordError
 from thermicon.perception.evidence.rows import load_evidence, load_rows, read_evidence
 from thermicon.perception.observer.observer import DATA
 

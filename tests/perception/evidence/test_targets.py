@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from tests.builders import messages
-from thermicon.circuit.records import RecordError
+from thermicon.base.files.records import RecordError
 from thermicon.perception.evidence import targets
 from thermicon.perception.evidence.targets import Published, TargetRow, combined, load_targets, published_for
 from thermicon.perception.evidence.verdicts import criterion_of_row, judge_row, value_text

@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from thermicon.base.files.records import RecordTable
 from thermicon.circuit import Rig
-from thermicon.circuit.records import RecordTable
 from thermicon.icons import load_library
 from thermicon.perception import rank
 from thermicon.perception.evidence.identified import GROUPS, SHAPES, WAVES, wave_name

@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from thermicon.circuit.cores import at_most, cores
+from thermicon.base.numbers.cores import at_most, cores
 from thermicon.perception.kernels.parallel import beside, in_order
 
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from thermicon.base.numbers.arrays import Array
 from thermicon.perception import Observer
-from thermicon.perception.arrays import Array
 from thermicon.perception.kernels import alignment, episodes, kernels, reports
 from thermicon.perception.kernels.crossing import (
     CERTAIN,

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit.records import RecordError
+from thermicon.base.files.records import RecordError
 from thermicon.perception import Observer
 from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.evidence.results import inputs_digest

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from thermicon.base.files.records import RecordError, RecordTable, load_records
 from thermicon.circuit import Rig, simulate
-from thermicon.circuit.records import RecordError, RecordTable, load_records
 from thermicon.icons import load_library, parse
 from thermicon.perception import Observer, draw_people, frontier, perceive, rank, search
 from thermicon.perception.identification.depths import rungs

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from tests.builders import weighted_quantile
 from tests.perception.pilot.madeup import USUAL, answers_of, measurements_of, spread
+from thermicon.base.numbers.cores import quiet_blas
 from thermicon.circuit import Rig
-from thermicon.circuit.cores import quiet_blas
 from thermicon.icons import read_cue
 from thermicon.perception.experiments.measure import Setting
 from thermicon.perception.observer.draws import PosteriorDraws

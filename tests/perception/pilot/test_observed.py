@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tests.perception.pilot.madeup import synthetic_trials
+from thermicon.base.files.records import RecordError
 from thermicon.circuit import Rig
-from thermicon.circuit.records import RecordError
 from thermicon.icons import IconSet
 from thermicon.perception import rank
 from thermicon.perception.identification.new_laboratory import DRAWS

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tests.perception.survival import answered, log_survival
+from thermicon.base.numbers.arrays import Array
 from thermicon.perception import Observer
-from thermicon.perception.arrays import Array
 from thermicon.perception.observer.observer import CHANNELS
 from thermicon.perception.sensation.detection import (
     Detection,

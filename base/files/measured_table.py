@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from ..model.arguments import InputError
+    from ..checks.arguments import InputError
 
     Array = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from ..model.arguments import InputError
+from ..checks.arguments import InputError
 from .column_names import NamedHeader, meant, named, unit_of
 from .table_text import table_text
 

@@ -7,7 +7,7 @@ from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 
-DRIVES = ("thermicon.icons", "thermicon.circuit")
+DRIVES = ("thermicon.base", "thermicon.icons", "thermicon.circuit")
 """Packages that determine the bytes of a drive and the verdict on it."""
 
 SUFFIXES = (".py", ".toml", ".csv", ".lark")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..number_text import number
+from ..words.number_text import number
 from .table import LARGEST
 
 if TYPE_CHECKING:

@@ -10,9 +10,8 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
-from thermicon.icons.model.arguments import InputError
-from thermicon.icons.near_words import did_you_mean, nearest_words
-
+from ..checks.arguments import InputError
+from ..words.near_words import did_you_mean, nearest_words
 from .inputs import read_text, read_toml
 
 Plain = str | float

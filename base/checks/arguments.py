@@ -11,8 +11,8 @@ from traceback import walk_tb
 from types import FunctionType, MappingProxyType, NoneType, UnionType
 from typing import Any, Literal, Self, TypeVar, Union, cast, get_args, get_origin, is_typeddict
 
-from ..near_words import did_you_mean
-from .clean_text import clean
+from ..words.clean_text import clean
+from ..words.near_words import did_you_mean
 
 F = TypeVar("F", bound=Callable[..., Any])
 RENAMED = {"norm": "memory now", "intervals": "parameters in Python"}
@@ -75,7 +75,7 @@ def checked(function: F) -> F:
     >>> cooled("6 °C")
     Traceback (most recent call last):
     ...
-    thermicon.icons.model.arguments.InputError: cooled: by takes a number, not '6 °C'
+    thermicon.base.checks.arguments.InputError: cooled: by takes a number, not '6 °C'
     """
     if isinstance(function, type):
         setattr(function, "__init__", checked(vars(function)["__init__"]))  # noqa: B010

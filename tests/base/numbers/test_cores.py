@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from thermicon.circuit.cores import quiet_blas
+from thermicon.base.numbers.cores import quiet_blas
 
 
 def threads() -> set[int]:

@@ -22,12 +22,12 @@ import numba
 import numpy as np
 import scipy
 
-from thermicon.icons.cache_folder import NotPrivate, compiled_folder, private_folder, remove_unused
+from ..files.cache_folder import NotPrivate, compiled_folder, private_folder, remove_unused
 
 STALE_S = 90 * 24 * 3600.0
 """Machine code that was not used for this long is removed."""
 SOURCES = (
-    *("circuit/compiled.py", "circuit/vector_math.py", "circuit/rig/module.py", "circuit/safety/*_kernel.py"),
+    *("base/numbers/compiled.py", "base/numbers/vector_math.py", "circuit/rig/module.py", "circuit/safety/*_kernel.py"),
     *("circuit/safety/tally.py", "circuit/solver/modes.py", "circuit/solver/kernel*.py"),
     *("circuit/solver/network.py", "circuit/solver/plates.py"),
     *("perception/kernels/*.py", "perception/selection/subset_identification.py"),
@@ -58,7 +58,7 @@ def kernel(**options: Any) -> Callable[[Kernel], Any]:
 @cache
 def kept_in() -> Path | None:
     """The folder of machine code; None, with one line on stderr, where no folder is safe to read from."""
-    root = Path(__file__).parents[1]
+    root = Path(__file__).parents[2]
     try:
         if not str(root).isprintable():  # numba hashes the paths of sources
             raise NotPrivate(f"{str(root)!a} has letters that this locale cannot read; set PYTHONUTF8=1")

@@ -17,14 +17,14 @@ from unittest.mock import Mock
 import numba
 import pytest
 
-from thermicon.circuit import compiled
-from thermicon.icons.cache_folder import NotPrivate, private_folder, remove_unused
+from thermicon.base.files.cache_folder import NotPrivate, private_folder, remove_unused
+from thermicon.base.numbers import compiled
 
 ONLY_POSIX = pytest.mark.skipif(sys.platform == "win32", reason="owners and modes are those of POSIX")
 
 STARTER = """
 import os, signal, sys
-import thermicon.circuit.compiled
+import thermicon.base.numbers.compiled
 from numba import njit
 signal.signal(signal.SIGCHLD, signal.SIG_IGN)
 njit(lambda x: x + 1.0)(1.0)  # what numba sets up at its first compilation
@@ -77,10 +77,10 @@ def first(tmp_path_factory: pytest.TempPathFactory, run: Run) -> Path:
     folder = whole / "sources"
     folder.mkdir()
     (folder / "inner.py").write_text(
-        "from thermicon.circuit.compiled import kernel\n\n\n@kernel()\ndef part(x):\n    return 2.0 * x\n"
+        "from thermicon.base.numbers.compiled import kernel\n\n\n@kernel()\ndef part(x):\n    return 2.0 * x\n"
     )
     (folder / "outer.py").write_text(
-        "from thermicon.circuit.compiled import kernel\nfrom inner import part\n\n\n"
+        "from thermicon.base.numbers.compiled import kernel\nfrom inner import part\n\n\n"
         "@kernel()\ndef total(x):\n    return part(x) + 1.0\n"
     )
     assert run(folder, whole / "cache") == (7.0, 0, "")
@@ -125,7 +125,7 @@ def test_machine_code_is_kept_and_read_again(run: Run, sources: Path, cache: Pat
 
 
 def test_the_digest_covers_all_that_is_compiled_and_its_constants(tmp_path: Path) -> None:
-    root = Path(compiled.__file__).parents[1]
+    root = Path(compiled.__file__).parents[2]
     covered = {path for one in compiled.SOURCES for path in root.glob(one)}
     assert all(any(root.glob(one)) for one in compiled.SOURCES)
     one, other = Path(__file__), tmp_path / "b.py"
@@ -138,7 +138,7 @@ def test_the_digest_covers_all_that_is_compiled_and_its_constants(tmp_path: Path
     for path in (path for package in ("circuit", "perception") for path in (root / package).rglob("*.py")):
         text = path.read_text(encoding="utf-8")
         foreign = path.name != "compiled.py" and ("njit" in text or "cache=True" in text)
-        assert not foreign, f"{path}: use thermicon.circuit.compiled.kernel"
+        assert not foreign, f"{path}: use thermicon.base.numbers.compiled.kernel"
         if "compiled" not in text and "vectorised" not in text:
             continue
         imports = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ImportFrom)]

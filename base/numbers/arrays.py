@@ -1,9 +1,10 @@
-"""Arrays: the name of their type, read-only copies, the form that kernels take."""
+"""Arrays: the names of their types, read-only copies, the form that kernels take."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+import numpy.typing as npt
 
-Array = NDArray[np.float64]
+Array = npt.NDArray[np.float64]
+Index = npt.NDArray[np.int64]
 
 
 def own_arrays(holder: object, *names: str) -> None:
@@ -19,7 +20,7 @@ def held(courses: Array, rows: int) -> Array:
     return np.pad(courses, [(0, 0)] * (courses.ndim - 1) + [(0, rows - courses.shape[-1])], "edge")
 
 
-def as_rows(values: ArrayLike) -> tuple[Array, tuple[int, ...]]:
+def as_rows(values: npt.ArrayLike) -> tuple[Array, tuple[int, ...]]:
     """(rows, n_time) read-only view of a contiguous float64 array, and the shape it came in.
 
     Always read-only, so that kernels are compiled for one kind of array and not for two.

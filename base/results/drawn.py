@@ -6,7 +6,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .atomic import complete_or_absent
+from ..files.atomic import complete_or_absent
 
 if TYPE_CHECKING:
     import pandas as pd

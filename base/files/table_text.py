@@ -6,8 +6,8 @@ import io
 import re
 from typing import TYPE_CHECKING
 
-from ..installing import install
-from ..kinds_of_files import HEAD, other_kind
+from ..words.installing import install
+from .kinds_of_files import HEAD, other_kind
 
 if TYPE_CHECKING:
     from .table import Fault

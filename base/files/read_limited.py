@@ -1,11 +1,8 @@
 """Input files, read with a limit of size."""
 
-import errno
 import stat
 from pathlib import Path
 from typing import Literal
-
-from ..model.errors import whole_file
 
 FileKind = Literal["folder", "device", "pipe", "socket"]
 
@@ -48,22 +45,3 @@ def read_limited(path: Path, most_bytes: int) -> bytes:
     if len(data) > most_bytes:
         raise TooLarge(len(data))
     return data
-
-
-def bytes_of(path: Path, what: str, suffix: str, most_bytes: int, smaller: str) -> bytes | None:
-    """Content of a file of icons, or None if there is none of this name; CueErrors name `what` it should hold."""
-    try:
-        return read_limited(path, most_bytes)
-    except NotRegular as found:
-        if found.kind == "folder":
-            help = f"name a {suffix} file in it, such as {path / f'my-{what}{suffix}'}"
-            raise whole_file("E002", str(path), f"a {what} is one file", help) from None
-        raise whole_file("E003", str(path), str(found), "save what it gives as a file, and name that") from None
-    except TooLarge as found:
-        raise whole_file("E004", str(path), str(found), smaller) from None
-    except (OSError, ValueError) as error:
-        if getattr(error, "errno", None) in (errno.ENOENT, errno.ENOTDIR, errno.ENAMETOOLONG):
-            return None
-        said = getattr(error, "strerror", None) or error
-        help = "check that it is there and that you may read it"
-        raise whole_file("E003", str(path), f"the system says: {said}", help) from None

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from tests.builders import messages
-from thermicon.circuit.records import Record, RecordError, RecordTable, dump_records, load_records
+from thermicon.base.files.records import Record, RecordError, RecordTable, dump_records, load_records
 
 GOOD = """
 [[record]]

@@ -9,13 +9,13 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thermicon.icons.files.read_limited import NotRegular, TooLarge, read_limited
-from thermicon.icons.files.shipped import beside
-from thermicon.icons.files.table import Fault
-from thermicon.icons.installing import install
-from thermicon.icons.model.arguments import InputError as InputError
-from thermicon.icons.model.clean_text import clean_line, first_control
-from thermicon.icons.near_words import did_you_mean
+from ..checks.arguments import InputError as InputError
+from ..words.clean_text import clean_line, first_control
+from ..words.installing import install
+from ..words.near_words import did_you_mean
+from .beside import beside
+from .read_limited import NotRegular, TooLarge, read_limited
+from .table import Fault
 
 if TYPE_CHECKING:
     from pydantic import ValidationError
@@ -137,7 +137,7 @@ def read_bytes(path: Path, what: str, limit_MB: float, error: type[Exception] = 
 
 
 def table_fault(path: str | Path, error: type[InputError] = InputError) -> Fault:
-    """Return what makes `error` out of a fault of the table in a file, for `icons.files.table`."""
+    """Return what makes `error` out of a fault of the table in a file, for `base.files.table`."""
 
     def fault(kind: str, line: int | None, what: str, cure: str) -> InputError:
         return error(f"{path}{f':{line}' if line else ''}: {what}; {cure}")
@@ -179,7 +179,7 @@ def read_toml(
 
 
 def _check_kind(text: str, where: str, what: str, error: type[Exception]) -> None:
-    from thermicon.icons.kinds_of_files import other_kind
+    from .kinds_of_files import other_kind
 
     if wrong := other_kind(text, what):
         raise error(f"{where}: {'; '.join(wrong)}")

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from thermicon.circuit.compiled import kernel
-from thermicon.circuit.vector_math import HIGHEST_EXP, LOWEST_EXP, exp, expm1, log, log1p
+from thermicon.base.numbers.compiled import kernel
+from thermicon.base.numbers.vector_math import HIGHEST_EXP, LOWEST_EXP, exp, expm1, log, log1p
 
 ULPS = 5
 Function = Callable[[float], float]

@@ -1,0 +1,1 @@
+"""Checks of arguments of public functions."""

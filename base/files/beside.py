@@ -1,0 +1,23 @@
+"""A file with a similar name in the same folder, for messages about one that is missing."""
+
+from itertools import islice
+from pathlib import Path
+
+from ..words.near_words import nearest_words
+
+MOST_LOOKED_AT = 1000
+"""Files of a folder among which a similar name is looked for."""
+
+
+def beside(path: str | Path, ending: str = "") -> str:
+    """A file of the same folder with a similar name and ending, which may have been meant; empty without one."""
+    wanted = Path(path)
+    try:
+        there = [each for each in islice(wanted.parent.iterdir(), MOST_LOOKED_AT) if not each.name.startswith(".")]
+    except (OSError, ValueError):
+        return ""
+    suffix = wanted.suffix or ending
+    alike = [each for each in there if not suffix or nearest_words(suffix, [each.suffix], cutoff=0.7)]
+    names = {each.name if wanted.suffix else each.stem: each.name for each in alike}
+    close = nearest_words(wanted.name, names, cutoff=0.7)
+    return str(wanted.with_name(names[close[0]])) if close else ""

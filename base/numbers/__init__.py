@@ -1,0 +1,1 @@
+"""Arrays, compiled functions, processor cores, and the program that computed a result."""

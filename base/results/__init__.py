@@ -1,0 +1,1 @@
+"""Results that draw themselves and are tables."""

@@ -1,0 +1,1 @@
+"""Words: numbers, names and texts as people read them."""
