@@ -1,5 +1,5 @@
 # The names of this package in the order of the flow; each is imported when it is first asked for.
-from thermicon.base.files.inputs import InputError as InputError
+from .rig.rigfile import InputError as InputError
 from .rig.rig import Rig as Rig
 from .rig.rules import Limits as Limits
 from .solver.drive import Drive as Drive, read_drive as read_drive

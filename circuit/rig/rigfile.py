@@ -6,7 +6,8 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BaseModel, Field, ValidationError
 
-from thermicon.base.files.inputs import LONGEST_NAME, InputError, Place, key_faults, read_toml
+from thermicon.base.checks.arguments import InputError as InputError
+from thermicon.base.files.inputs import LONGEST_NAME, Place, key_faults, read_toml
 from thermicon.base.words.near_words import did_you_mean, nearest_words
 
 from . import faults as kinds
