@@ -149,7 +149,7 @@ def plot_observed(found: Observed[Any, Any], ax: Axes | None = None) -> Axes:
     axes.set_ylim(len(places) - 0.5, -1.0)
     axes.spines[["top", "right", "left"]].set_visible(False)
     axes.set_xlabel("felt and named (%), mean over people\nand 95 % of laboratories")
-    axes.set_title("Felt and named before and after the data", loc="left")
+    axes.set_title("Before and after the data", loc="left")
     axes.legend(frameon=False, loc="upper center", ncols=2)
     return axes
 
