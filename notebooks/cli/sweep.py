@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -253,11 +252,11 @@ def sweep_command(
 
 def read_measures(text: str, intervals: int) -> tuple[str, ...]:
     """Read ``--measure``, beside the draws for intervals; what cannot be is a usage error."""
-    from thermicon.perception.selection.goal import other_word, word_of
+    from thermicon.perception.selection.goal import other_word, quantity_of, word_of
 
     if (offer := other_word(text)) is not None:
         note(offer)
-    names = tuple(re.sub(r"^correct(?![a-z])", "named", name.strip().replace("-", "_")) for name in text.split(","))
+    names = tuple(quantity_of(name.strip()) for name in text.split(","))
     for name in names:
         if name not in MEASURES:
             raise usage(f"{name!r} is not one of {', '.join(map(word_of, MEASURES))}", "--measure")

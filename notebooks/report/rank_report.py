@@ -25,8 +25,9 @@ BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
 MOST_CONSTANTS = 12
 """Constants in the table of what carries the doubt; a file has them all."""
-RANKED = ("icon", "detected", "onset", "channel", "felt+named", "most confused with")
-NAMED = "named"
+ALERT, NAMED = "felt+named", "named"
+RANKED = ("icon", "detected", "onset", "channel", ALERT, "most confused with")
+RANKED_BOTH = ("icon", "detected", "onset", ALERT, NAMED, "most confused with")  # without channel a row has 80 columns
 A_POINT = 0.01
 """Where felt and named is less than named by more for any icon, both are shown."""
 
@@ -158,7 +159,7 @@ def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = N
     chosen = () if made.choice is None else made.choice.icons
     icons = sorted(icons, key=lambda icon: icon.name not in chosen)
     both = differs(icons)
-    heads = (*RANKED[:3], RANKED[4], NAMED, RANKED[5]) if both else RANKED  # without channel a row has 80 columns
+    heads = RANKED_BOTH if both else RANKED
     rows: list[tuple[str | Cell, ...]] = [
         (
             f"{'✓ ' * (icon.name in chosen)}{icon.name}{' *' * (place >= apart)}",
@@ -173,7 +174,7 @@ def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = N
     ]
     if most is not None and len(rows) > (most := max(most, len(chosen))) + 1:
         rows = [*rows[:most], (f"and {len(rows) - most} more", *[""] * (len(heads) - 1))]
-    return grid(heads, rows, ("detected", "onset", RANKED[4], NAMED), heads, apart)
+    return grid(heads, rows, ("detected", "onset", ALERT, NAMED), heads, apart)
 
 
 def rival(ranking: Ranking, place: int) -> str:

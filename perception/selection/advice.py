@@ -109,20 +109,20 @@ def ways_to(
 
 
 def _edits(ranking: Ranking, edits: Edits) -> Iterator[tuple[Edit, ...]]:
-    """Sets of edits, the smallest first: of the worst pair, of all close pairs, of the worst pair to be far apart."""
+    """Different sets of edits, as they are found."""
     seen: list[tuple[Edit, ...]] = [()]
+    for some in map(compatible, _searched(ranking, edits)):
+        if some not in seen:
+            seen.append(some)
+            yield some
+
+
+def _searched(ranking: Ranking, edits: Edits) -> Iterator[list[Edit | NoEdit]]:
+    """Edits, the fewest first: of the worst pair, of all close pairs, of the worst pair to be far apart."""
     a, b = ranking.worst_pair or ("", "")
-    if (some := compatible([edits[pair] for pair in ((a, b),) if pair in edits])) not in seen:
-        seen.append(some)
-        yield some
+    yield [edits[a, b]] if (a, b) in edits else []
     near = sorted(ranking.pairs, key=lambda pair: -pair.confused_probability)[:MOST_PAIRS]
     close = {(p.a, p.b): edits.get((p.a, p.b)) for p in near if p.d_prime < DISTINGUISHABLE_DPRIME}
-    every = compatible([edit or cheapest_edit(ranking, *pair) for pair, edit in close.items()])
-    if every not in seen:
-        seen.append(every)
-        yield every
+    yield [edit or cheapest_edit(ranking, *pair) for pair, edit in close.items()]
     apart = next(pair.d_prime for pair in ranking.pairs if (pair.a, pair.b) == (a, b))
-    if (
-        some := compatible([cheapest_edit(ranking, a, b, wanted=FURTHER * max(apart, DISTINGUISHABLE_DPRIME))])
-    ) not in seen:
-        yield some
+    yield [cheapest_edit(ranking, a, b, wanted=FURTHER * max(apart, DISTINGUISHABLE_DPRIME))]

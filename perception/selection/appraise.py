@@ -15,7 +15,7 @@ from thermicon.icons.files.shipped import Icons, icons_of
 from thermicon.icons.model.arguments import InputError, checked
 
 from ..arrays import Array
-from ..identification.measures import information_bits, proportion_correct
+from ..identification.measures import felt_and_named, information_bits, proportion_correct
 from ..identification.population import RATE_HZ, PopulationResponse, ReceptorTemperatures, identify, respond, run_end_s
 from ..identification.task import USUAL, Task
 from ..observer.observer import Observer
@@ -91,7 +91,7 @@ def appraise(
     felt, durations = population_response(icons, rig, people, crowd.tracking, detection=True, observer=nominal)
     d_prime, named = identify(felt, crowd.memory, people, nominal, crowd.seed, task=task)
     each, bits = proportion_correct(named.probability), float(information_bits(named.probability).mean())
-    alert, pooled = felt.detected.probability * np.diagonal(named.probability, axis1=1, axis2=2), named.pooled
+    alert, pooled = felt_and_named(felt.detected.probability, named.probability), named.pooled
     middle = np.median(d_prime, axis=0)
     a, b = nearest_two(middle)
     return Appraisal(
