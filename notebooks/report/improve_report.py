@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import count_of, number, percent, percent_span
@@ -13,6 +13,7 @@ from .rank_details import crowd_text, edit_text, trouble_lines
 from .rank_report import BARELY
 
 if TYPE_CHECKING:
+    from thermicon.perception.selection.advice import Way
     from thermicon.perception.selection.frontier import Frontier
     from thermicon.perception.selection.search import SearchResult
 
@@ -22,8 +23,11 @@ REFINING_PEOPLE = 24
 """As in `thermicon.perception.selection.search_run`, repeated here to avoid its imports."""
 
 
-def frontier_report(found: Frontier, title: str, following: str = "") -> list[Block]:
-    """Report one row for each number of icons, the largest choice, what was left out, and what follows."""
+def frontier_report(found: Frontier, title: str, following: str = "", ways: Sequence[Way] = ()) -> list[Block]:
+    """Report one row for each number of icons, the largest choice, what was left out, and what follows.
+
+    `ways` were tried with the choice that comes nearest to a goal that none meets.
+    """
     heads = (
         "icons",
         "felt and named",
@@ -58,7 +62,7 @@ def frontier_report(found: Frontier, title: str, following: str = "") -> list[Bl
     said = [
         f"The {len(named.icons)}{' that meet the goal' * bool(met)}: {names}",
         *(["* not proven to be the best of their number"] * any(not point.optimal for point in found.points)),
-        *_goal(found),
+        *_goal(found, ways),
         *left_out(largest.excluded),
         *([f"Next: {following}"] if following else []),
     ]
@@ -75,15 +79,16 @@ def frontier_report(found: Frontier, title: str, following: str = "") -> list[Bl
     ]
 
 
-def _goal(found: Frontier) -> Iterator[str]:
-    """The largest choice that meets the goal with its parts, or the smallest with what is in its way."""
-    judged = [(len(point.icons), goal) for point, goal in zip(found.points, found.goals, strict=False)]
+def _goal(found: Frontier, ways: Sequence[Way]) -> Iterator[str]:
+    """The largest choice that meets the goal with its parts, or the nearest with what is in its way."""
+    judged = list(zip(found.points, found.goals, strict=False))
     if met := [each for each in judged if each[1].met]:
-        count, result = met[-1]
-        more = "the largest choice here" if count == judged[-1][0] else "by no larger choice of these"
-        yield from goal_lines(result, f"met by the best {count}, {more}")
-    for count, result in judged[:1] if not met else ():
-        yield from goal_lines(result, f"met by none of these choices; the best {count}:")
+        point, result = met[-1]
+        more = "the largest choice here" if point is judged[-1][0] else "by no larger choice of these"
+        yield from goal_lines(result, f"met by the best {len(point.icons)}, {more}")
+    elif judged:
+        point, result = found.nearest
+        yield from goal_lines(result, f"met by none of these choices; the best {len(point.icons)}:", ways)
 
 
 def _reached(found: Frontier) -> str:
@@ -131,7 +136,7 @@ def search_report(found: SearchResult, before: SetReport, after: SetReport, titl
     said.append(f"Before: {', '.join(icon.name for icon in found.start)}")
     goal: list[Block] = []
     if after.goal is not None:
-        goal.append(Text("\n".join(goal_lines(after.goal))))
+        goal.append(Text("\n".join(goal_lines(after.goal, ways=after.ways))))
         goal += (
             [] if after.goal.met else [Text("Not reached by this search: more --evaluations may find a better set.")]
         )
