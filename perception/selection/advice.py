@@ -18,8 +18,9 @@ from ..observer.observer_model import Crowd
 from ..ranking.batches import Job
 from ..ranking.rank import rank
 from ..ranking.ranking import Ranking
-from .choose import Choice, choose
+from .choose import Choice, Chooser
 from .edit import Edit, NoEdit, cheapest_edit
+from .goal import Goal
 from .goal_result import GoalPartResult, GoalResult, judge_goal
 from .louder import louder
 from .request import ChoiceError, Selection
@@ -27,6 +28,9 @@ from .request import ChoiceError, Selection
 Edits = Mapping[tuple[str, str], Edit | NoEdit]
 ALMOST = 0.1
 """Icons are made so loud that people miss as many plays as the goal allows, then so small a share of these."""
+HOPELESS, CAREFUL = -0.08, 2
+"""Choices that a few people on average miss by more are not judged by all; of so many numbers of icons the next best
+are judged too."""
 FURTHER = 1.3
 """The worst pair is also edited to be so many times farther apart than it is."""
 LARGER = (2.0, 4.0)
@@ -102,16 +106,30 @@ def ways_to(
         for some in _edits(ranking, missed, edits):
             made = ranked_as(job, ranking.crowd, with_edits(job.icons, some), draws)
             yield Way(judge_goal(goal, made), edits=some)
-    least = max(2, int(goal.of("count") or 2))
-    most = len(ranking.icons) if choice is None else len(choice.icons)
-    for count in range(most - 1, least - 1, -1) if _wrong(missed) != {"count"} else ():
-        try:
-            fewer = choose(ranking, Selection(count, goal.objective, must, *goal.totals), goal=goal, parameters=draws)
-        except ChoiceError:
-            continue
-        yield Way(judge_goal(goal, ranking, fewer), choice=fewer, must=must)
+    if _wrong(missed) != {"count"}:
+        yield from _fewer(ranking, goal, draws, len(ranking.icons) if choice is None else len(choice.icons), must)
     names = ranking.labels if choice is None else choice.icons
     yield from contacts_to(job, ranking.crowd, [icon for icon in job.icons if icon.name in names], missed, draws)
+
+
+def _fewer(ranking: Ranking, goal: Goal, draws: int, fewer_than: int, must: tuple[str, ...]) -> Iterator[Way]:
+    """The best choices of fewer icons that have any hope, the largest first; then the nearest ones chosen with care."""
+    asked = Selection(max(2, int(goal.of("count") or 2)), goal.objective, must, *goal.totals)
+    chooser = Chooser(ranking.job, ranking.model, asked, goal, ranking.carry_over)
+    try:
+        chooser.feel(ranking.felt)
+    except ChoiceError:
+        return
+    counts = range(min(fewer_than - 1, len(chooser.pool)), asked.count - 1, -1)
+    hopeful = [count for count in counts if not goal.of_sets or chooser.hopes(count) >= HOPELESS]
+    near: list[Way] = []
+    for alone in (True, False):
+        for count in hopeful:
+            if (found := chooser.best(count, draws, lambda: None, alone=alone)) is not None:
+                near.append(Way(judge_goal(goal, ranking, found), choice=found, must=must))
+                yield near[-1]
+        near.sort(key=lambda way: -way.result.margin)
+        hopeful = [len(way.choice.icons) for way in near[:CAREFUL] if way.choice is not None and goal.of_sets]
 
 
 def contacts_to(job: Job, crowd: Crowd, icons: Sequence[Icon], missed: GoalResult, draws: int) -> Iterator[Way]:

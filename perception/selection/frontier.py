@@ -193,7 +193,11 @@ def frontier(
         chooser.feel(felt)
         points: list[Choice] = []
         for count in sizes:
-            choice = chooser.best(count, draws, step, restarts) if count <= len(chooser.pool) else None
+            choice = (
+                chooser.best(count, draws, step, restarts, restarts == ROUGH_RESTARTS)
+                if count <= len(chooser.pool)
+                else None
+            )
             if choice is None:  # nor will more keep the limits
                 break
             points.append(choice)
