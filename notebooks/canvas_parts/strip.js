@@ -5,12 +5,15 @@ class Strip {
   constructor(onGoal, say) {
     Object.assign(this, { say, said: null, older: false, told: null });
     const input = { type: "text", class: "tm-goal", placeholder: "90 % felt-and-named", title: "goal of the set, kept in its text", maxlength: 300 };
-    this.goal = make("input", { ...input, onchange: () => onGoal(this.goal.value) });
+    const take = () => this.goal.value === this.said?.goal || onGoal(this.goal.value);
+    // JupyterLab keeps the change that Enter makes of an input.
+    const onkeydown = (event) => event.key === "Enter" && (event.preventDefault(), take());
+    this.goal = make("input", { ...input, onchange: take, onkeydown });
     const number = () => make("b", {}, "–");
     Object.assign(this, { whole: number(), icon: number(), felt: number(), met: make("b", { class: "tm-met" }) });
     this.element = make("div", { class: "tm-strip", role: "group", "aria-label": "Predictions", "data-lm-suppress-shortcuts": "true" },
-      make("span", {}, "set ", this.whole, " felt and named"), make("label", {}, "goal ", this.goal, this.met),
-      make("span", {}, "icon ", this.icon, " felt and named, felt by ", this.felt));
+      make("span", {}, "felt and named: set ", this.whole), make("label", {}, "goal ", this.goal, this.met),
+      make("span", {}, "icon ", this.icon, ", felt by ", this.felt));
   }
 
   /** The numbers stay, pale; whether a goal is met is not known of another text. */
