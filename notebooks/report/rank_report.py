@@ -189,7 +189,7 @@ def rival(ranking: Ranking, place: int) -> str:
 
 def doubt_report(found: Sensitivity, title: str) -> list[Block]:
     """Report one row per constant that counts, the most important first, and what to measure first."""
-    numbers = ("correct", "bits", "correct low–high")
+    numbers = ("named", "bits", "named low–high")
     rows = [
         (
             effect.constant,

@@ -50,7 +50,7 @@ class Confusions:
 
     @property
     def correct(self) -> Array:
-        """Proportion correct of every laboratory, as the mean over its people."""
+        """Proportion named of every laboratory, as the mean over its people."""
         each: Array = np.trace(self.probability, axis1=2, axis2=3, dtype=np.float64) / len(self.icons)
         return np.asarray(each.mean(axis=1))
 

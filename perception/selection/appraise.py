@@ -30,7 +30,7 @@ REACHED_BY = 0.95
 
 @dataclass(frozen=True, slots=True)
 class Appraisal:
-    """One set at its own range: the worst pair by median d′, proportion correct, bits, and bits per second.
+    """One set at its own range: the worst pair by median d′, proportion named, bits, and bits per second.
 
     `reached` is what 95 % of people feel and name, `reached_named` what they name; `each_felt_and_named` (icons,) is
     that of single icons, `detected` (icons,) how often they are reported, and `confused` (icons, icons) how often they

@@ -220,7 +220,7 @@ def test_the_table_of_doubt_says_what_to_measure_first(cli: Cli, two: Path, tmp_
     effects = json.loads(out.read_text(encoding="utf-8"))["effects"]
     assert {"constant", "unit", "low", "high", "proportion_correct", "information_bits"} <= set(effects[0])
     words = " ".join(said.stdout.split())
-    assert words.startswith("Two for a test constant 95 % of draws correct bits correct low–high ")
+    assert words.startswith("Two for a test constant 95 % of draws named bits named low–high ")
     assert "What to measure first, with the share of the variance of what is named that it would remove: - " in words
     assert effects[0]["constant"].split()[0] in words
     assert (
