@@ -168,7 +168,7 @@ def improve_command(
                 write_text(str(set_to_write(icons, made.choice.icons, where)), path, missed)
             elif path.suffix == ".cue":
                 if made.edited is None:
-                    why = "no edit that was tried meets the goal" if made.ways else "there is no edit to write"
+                    why = "no edit that was tried meets the goal" if missed else "there is no edit to write"
                     refused, written = f"{why}, and no set was written", None
                 else:
                     write_text(str(_edited(icons, made.edited, where)), path, missed * (made.way is None))

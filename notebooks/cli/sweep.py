@@ -18,10 +18,10 @@ from ..messages import Progress, fail, note, progress_bar, usage
 from ..report.run_report import sweep_lines, sweep_report
 from ..report.terminal import show
 from .options import (
+    MOST_DRAWS,
     FigureOptions,
     FileName,
     IconName,
-    Intervals,
     People,
     RigOptions,
     Seed,
@@ -209,7 +209,7 @@ def sweep_command(
         ),
     ] = None,
     people: People = 60,
-    intervals: Intervals = 64,
+    intervals: Annotated[int, opt("N", "Draws of the posterior for intervals; 0 for none.", 0, MOST_DRAWS)] = 64,
     seed: Seed = 0,
     tail: Tail = 0.0,
 ) -> None:
@@ -246,8 +246,8 @@ def sweep_command(
     if output is not None:
         write_frame(frame, output)
     elif what:
-        again = command_text([file], rig, paths=True)
-        show([*sweep_report(frame, key, what), f"Next: take a value that helps into the rig, then {again}"])
+        again = command_text([file], rig, paths=True) + f" --set {key}=VALUE" * (key not in (SITE, AGE))
+        show([*sweep_report(frame, key, what), f"Next: {again}, with a value that helps"])
 
 
 def read_measures(text: str, intervals: int) -> tuple[str, ...]:

@@ -92,8 +92,7 @@ def _by_way(found: SetReport, command: Command) -> str:
     assert found.goal is not None
     way, goal = found.way, _goal(found.goal.goal)
     if way is None:
-        none = "Nothing that was tried meets the goal. " if found.ways else ""
-        return f"{'; '.join(found.goal.binding)}. {none}{OTHER}"
+        return f"{'; '.join(found.goal.binding)}. Nothing that was tried meets the goal. {OTHER}"
     if way.edits:
         return command("improve", "--edits", *goal, "-o", "edited.cue")
     if way.choice is not None:

@@ -107,14 +107,15 @@ def edits_report(made: SetReport, title: str, following: str) -> list[Block]:
         pair = next(each for each in ranking.pairs if {each.a, each.b} == {a, b})
         if text := edit_text(made, pair):
             said.append(f"{a} and {b}, d′ {number(pair.d_prime)}: {text}")
-    effect = "No edit that was tried meets the goal." if made.ways else "No pair has an edit that helps."
+    missed = made.goal is not None and not made.goal.met
+    effect = "No edit that was tried meets the goal." if missed else "No pair has an edit that helps."
     if after is not None and after.worst is not None:
         effect = (
             f"With {'the edits that meet the goal' if made.way else 'these edits'}: felt and named "
             f"{percent(ranking.felt_and_named)} → {percent(after.felt_and_named)}, worst pair {after.worst.a} and "
             f"{after.worst.b}, d′ {number(after.worst.d_prime)}."
         )
-    elif not said:
+    elif not said and not missed:
         effect = "Every pair is distinguishable: no edit is needed." if ranking.pairs else "There is no pair to edit."
     return [
         *([Heading(title, 1)] if title else []),
@@ -137,9 +138,9 @@ def search_report(found: SearchResult, before: SetReport, after: SetReport, titl
     goal: list[Block] = []
     if after.goal is not None:
         goal.append(Text("\n".join(goal_lines(after.goal, ways=after.ways))))
-        goal += (
-            [] if after.goal.met else [Text("Not reached by this search: more --evaluations may find a better set.")]
-        )
+        if not after.goal.met:
+            stays = "".join(f", and {name}, which is no family, stays" for name in _in_the_way(found, after))
+            goal.append(Text(f"Not reached by this search: more --evaluations may find a better set{stays}."))
     return [
         *([Heading(title, 1)] if title else []),
         Text("Found:"),
@@ -176,6 +177,14 @@ def _scores(found: SearchResult, before: SetReport, after: SetReport) -> Iterato
     yield "information, bits", f"{a.information_bits:.2f}", f"{b.information_bits:.2f}"
     yield "information rate, bits/s", f"{a.bits_per_s:.2f}", f"{b.bits_per_s:.2f}"
     yield "total duration, s", number(pair[0].total_s), number(pair[1].total_s)
+
+
+def _in_the_way(found: SearchResult, after: SetReport) -> list[str]:
+    """The icon that is felt and named least, where no search changes it."""
+    from thermicon.perception.selection.candidates import FOUND
+
+    least = min(after.ranking.icons, key=lambda icon: icon.felt_and_named).name
+    return [icon.name for icon in found.found if icon.name == least and FOUND not in icon.metadata.tags]
 
 
 def _remarks(found: SearchResult, after: SetReport) -> Iterator[str]:

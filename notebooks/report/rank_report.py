@@ -153,7 +153,7 @@ def differs(icons: Sequence[IconScore]) -> bool:
 def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = None) -> Grid:
     """One row per icon, the chosen first, else in this order; those unsafe or not reached have a star and stand apart.
 
-    Of more than `most`, or than are chosen, the last row says how many were left out.
+    Of more than `most`, or than are chosen, one row says how many were left out; the last icon stays.
     """
     apart, labels = sum(icon.playable for icon in icons), made.ranking.labels
     chosen = () if made.choice is None else made.choice.icons
@@ -173,7 +173,9 @@ def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = N
         for place, icon in enumerate(icons)
     ]
     if most is not None and len(rows) > (most := max(most, len(chosen))) + 1:
-        rows = [*rows[:most], (f"and {len(rows) - most} more", *[""] * (len(heads) - 1))]
+        rest = (f"and {len(rows) - most} more", *[""] * (len(heads) - 1))
+        rows = [*rows[:most], rest] if chosen else [*rows[: most - 1], rest, rows[-1]]
+        apart = min(apart, len(rows) - (apart < len(icons)))
     return grid(heads, rows, ("detected", "onset", ALERT, NAMED), heads, apart)
 
 

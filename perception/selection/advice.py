@@ -28,9 +28,10 @@ from .request import ChoiceError, Selection
 Edits = Mapping[tuple[str, str], Edit | NoEdit]
 ALMOST = 0.1
 """Icons are made so loud that people miss as many plays as the goal allows, then so small a share of these."""
-HOPELESS, CAREFUL = -0.08, 2
-"""Choices that a few people on average miss by more are not judged by all; of so many numbers of icons the next best
-are judged too."""
+FEW, HOPELESS = 24, -0.08
+"""People and draws that judge a way first, and the margin below which it is left at that."""
+CAREFUL = 2
+"""Of so many numbers of icons the next best choices are judged too."""
 FURTHER = 1.3
 """The worst pair is also edited to be so many times farther apart than it is."""
 LARGER = (2.0, 4.0)
@@ -100,12 +101,12 @@ def ways_to(
     choice: Choice | None = None,
     must: tuple[str, ...] = (),
 ) -> Iterator[Way]:
-    """Try ways to a goal that the set, or a choice out of it, misses, the cheapest first."""
+    """Try ways to a goal that the set, or a choice out of it, misses, the cheapest first, if there is hope."""
     job, goal = ranking.job, missed.goal
     if choice is None and all(icon.playable for icon in ranking.icons) and _felt(missed):
         for some in _edits(ranking, missed, edits):
-            made = ranked_as(job, ranking.crowd, with_edits(job.icons, some), draws)
-            yield Way(judge_goal(goal, made), edits=some)
+            if (result := _judged(job, ranking.crowd, with_edits(job.icons, some), goal, draws)) is not None:
+                yield Way(result, edits=some)
     if _wrong(missed) != {"count"}:
         yield from _fewer(ranking, goal, draws, len(ranking.icons) if choice is None else len(choice.icons), must)
     names = ranking.labels if choice is None else choice.icons
@@ -140,9 +141,18 @@ def contacts_to(job: Job, crowd: Crowd, icons: Sequence[Icon], missed: GoalResul
             larger = job.rig.with_(**{"contact.area_cm2": area})
         except ValueError:
             return
-        found = ranked_as(job, crowd, icons, draws, larger)
-        if all(icon.playable for icon in found.icons):
-            yield Way(judge_goal(missed.goal, found), area_cm2=area)
+        if (result := _judged(job, crowd, icons, missed.goal, draws, larger)) is not None:
+            yield Way(result, area_cm2=area)
+
+
+def _judged(
+    job: Job, crowd: Crowd, icons: Sequence[Icon], goal: Goal, draws: int, rig: Rig | None = None
+) -> GoalResult | None:
+    """How icons meet a goal; None where they cannot be played, or a few people and draws find them far from it."""
+    few = ranked_as(job, crowd.but(people=min(crowd.people, FEW)), icons, min(draws, FEW), rig)
+    if not all(icon.playable for icon in few.icons) or judge_goal(goal, few).margin < HOPELESS:
+        return None
+    return judge_goal(goal, ranked_as(job, crowd, icons, draws, rig))
 
 
 def _wrong(missed: GoalResult) -> set[str]:

@@ -105,7 +105,7 @@ class Choice:
         }
 
     def __repr__(self) -> str:
-        how = "proven best" if self.optimal else f"none exceeds {self.bound:.3g}"
+        how = f"proven best for {self.people} people" if self.optimal else f"none exceeds {self.bound:.3g}"
         return f"Choice({', '.join(self.icons)}: {self.objective} {self.value:.3g}, {how})"
 
 
