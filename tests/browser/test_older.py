@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.jupyter import PANEL
-from tests.browser.onbench import TWO, open_tab, root, type_text
+from tests.browser.onbench import TWO, expect_text, open_tab, root, type_text
 from tests.browser.staticpage import TEXT, TROUBLE, Bench, design
 
 SAFE = f"# goal: correct >= 10 %\n{TWO}"
@@ -90,7 +90,10 @@ def test_unsafe_text_that_nobody_judged_never_stands_beside_a_word_on_safety(ben
 
 def test_a_knob_and_a_rig_that_a_busy_kernel_does_not_know_are_not_judged(bench: Page) -> None:
     page, late = bench, root(bench).get_by_role("alert")
-    type_text(page, SAFE)
+    type_text(page, TWO)
+    page.locator(".tm-goal").fill("correct >= 10 %")
+    page.locator(".tm-goal").press("Enter")
+    expect_text(page, SAFE)
     expect(page.locator(".tm-pill")).to_have_text("✓ limits kept")
     page.evaluate(DONE_TO_THE_KERNEL["busy"])
     page.wait_for_timeout(500)
