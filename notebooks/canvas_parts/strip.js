@@ -3,12 +3,15 @@
 class Strip {
   /** `onGoal(text)` receives a goal that was typed. */
   constructor(onGoal, say) {
-    Object.assign(this, { say, said: null, older: false, told: null, asked: "" });
+    Object.assign(this, { say, said: null, older: false, told: null, aimed: "" });
     const input = { type: "text", class: "tm-goal", placeholder: "90 % felt-and-named", title: "goal of the set, kept in its text", maxlength: 300 };
-    const take = () => this.goal.value === this.asked || onGoal((this.asked = this.goal.value));
-    // JupyterLab keeps the change that Enter makes of an input.
-    const onkeydown = (event) => event.key === "Enter" && (event.preventDefault(), take());
-    this.goal = make("input", { ...input, onchange: take, onkeydown });
+    const aim = () => {
+      if (this.goal.value === this.aimed) return;
+      this.aimed = this.goal.value;
+      onGoal(this.aimed);
+    };
+    // In JupyterLab, Enter makes no change event.
+    this.goal = make("input", { ...input, onchange: aim, onkeydown: ({ key }) => key === "Enter" && aim() });
     const number = () => make("b", {}, "–");
     Object.assign(this, { whole: number(), icon: number(), felt: number(), met: make("b", { class: "tm-met" }) });
     this.element = make("div", { class: "tm-strip", role: "group", "aria-label": "Predictions", "data-lm-suppress-shortcuts": "true" },
@@ -29,7 +32,7 @@ class Strip {
     for (const [part, name] of [[this.whole, "set"], [this.icon, "icon"], [this.felt, "felt"]]) {
       setText(part, given[name] === "–" ? "–" : nearly + given[name]);
     }
-    if (given.goal !== this.said?.goal) this.goal.value = this.asked = given.goal;
+    if (given.goal !== (this.said?.goal ?? "")) this.goal.value = this.aimed = given.goal;
     const judged = older ? "? not judged" : { true: "✓ met", false: "✕ not met" }[given.met] ?? "?";
     setText(this.met, given.goal ? judged : "");
     this.met.title = older ? "" : given.binding;
