@@ -47,10 +47,11 @@ class SensorLook:
         """What was read in °C by sensor."""
         levels = {}
         for name, answer in self._answers.items():
-            try:
-                if isinstance(answer, BaseException):
-                    raise answer
-                levels[name] = float(answer)  # type: ignore[arg-type]
-            except BaseException as problem:
-                raise Stopped(f"the {name} is lost ({str(problem) or type(problem).__name__})") from problem
+            if not isinstance(answer, BaseException):
+                try:
+                    levels[name] = float(answer)  # type: ignore[arg-type]
+                    continue
+                except Exception as problem:
+                    answer = problem
+            raise Stopped(f"the {name} is lost ({str(answer) or type(answer).__name__})") from answer
         return levels

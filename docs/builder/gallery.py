@@ -76,7 +76,7 @@ def _rows(ranking: Ranking, icons: IconSet) -> Iterator[str]:
     for name, row in zip(labels, confusion["probability"], strict=True):
         share, other = max((share, label) for label, share in zip(labels, row, strict=True) if label != name)
         meaning = icons[name].metadata.means or ""
-        yield f"| `{name}` | {meaning} | {felt[name] * 100:.0f} % | `{other}` {share * 100:.0f} % |"
+        yield f"| `{name}` | {meaning} | {felt[name] * 100:.0f} % | `{other}` {share * 100:.0f}&nbsp;% |"
 
 
 def png(figure: Figure | Any) -> bytes:

@@ -12,7 +12,7 @@ const TEXT_LAGS_MS = 100; // behind a pulled corner
 class DesignView {
   /** `id` tells one model of the kernel from another. */
   constructor(root, flow, say, id) {
-    Object.assign(this, { root, flow, say, editSeq: 0, asked: 0, drawn: 0, notes: "", onLocalText: () => {}, onAsked: () => {} });
+    Object.assign(this, { root, flow, say, editSeq: 0, asked: 0, drawn: 0, notes: "", onLocalText: () => {}, onNewer: () => {} });
     this.unsaved = new UnsavedText(id, (text) => this.tellLeft(text));
     this.editor = new Editor(root, {
       onText: (text) => this.edited(text),
@@ -49,20 +49,22 @@ class DesignView {
 
   /** Posts what the page shows already, while badge, strip and curves are those of what stood there before. */
   ask(message) {
+    this.question = message;
     this.asked = this.flow.post(message);
-    this.onAsked();
+    this.onNewer();
     return this.asked;
   }
 
-  /** Shows whether all this is older than the text: since no kernel answers, one is computing, or the text has errors. */
+  /** Shows whether all this is of another text than the one that stands here, or of another rig or icon, and why. */
   age(late, computing) {
     if (!this.frame) return;
-    const { icon, badge, stale } = this.frame;
-    const why = late ? "no answer" : computing && !stale ? "computing …" : "";
+    const { icon, badge, stale, of } = this.frame;
+    const other = !this.later && asHeld(of) !== this.editor.text;
+    const why = late ? "no answer" : stale ? "" : computing ? "computing …" : other ? "of another text" : "";
     const shown = why ? { colour: "grey", text: `not judged: ${why}`, more: [] } : badge;
     const older = Boolean(why || stale);
     for (const place of [this.root, this.root.closest(".thermicon")]) place?.toggleAttribute("data-older", older);
-    this.badge.show(shown, computing && !late);
+    this.badge.show(shown, Boolean(why) && !late);
     this.strip.age(older);
     Object.assign(this.root.dataset, { icon: icon ?? "", colour: shown.colour });
   }
@@ -105,7 +107,10 @@ class DesignView {
     };
     this.newestText = take;
     if (!this.timeline.handles.pulledBeyond(frame.seq)) take();
-    else this.later ||= setTimeout(() => this.newestText(), TEXT_LAGS_MS);
+    else this.later ||= setTimeout(() => {
+      this.newestText();
+      this.onNewer();
+    }, TEXT_LAGS_MS);
   }
 
   showIcons({ icons, icon }) {

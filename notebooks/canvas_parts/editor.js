@@ -59,7 +59,7 @@ class Editor {
   /** Puts in a text from the kernel; caret and scrolling stay with the words around them. */
   replace(text) {
     const old = this.text;
-    const fresh = text.replace(/\r\n?/g, "\n"); // as CodeMirror holds it
+    const fresh = asHeld(text);
     if (fresh === old) return;
     const head = commonHead(old, fresh);
     const tail = commonTail(old, fresh, head);
@@ -158,6 +158,11 @@ class Editor {
   stop() {
     this.view.destroy();
   }
+}
+
+/** A text as CodeMirror holds it. */
+function asHeld(text) {
+  return text.replace(/\r\n?/g, "\n");
 }
 
 function commonHead(one, other) {

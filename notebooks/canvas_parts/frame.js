@@ -20,7 +20,7 @@ function panelOf(given) {
 /** The frame of a "design" or "traces" view. */
 function tracesFrame(meta, buffers) {
   const defaults = {
-    seq: 0, text: null, icons: [], icon: null, troubles: [], stale: false, can_undo: false, can_redo: false,
+    seq: 0, text: null, of: "", icons: [], icon: null, troubles: [], stale: false, can_undo: false, can_redo: false,
     badge: { colour: "grey", text: "", more: [] }, notes: [], time: { t0: 0, dt: 1, n: 0 }, handles: [], ms: null,
   };
   const frame = { ...defaults, ...meta, arrays: (buffers ?? []).map(floatsOf) };

@@ -7,6 +7,7 @@ const VIEWS = {
 };
 const LATE = "No answer from the kernel: run the cell again to go on";
 const WATCH_MS = 1000;
+const TOUCHES = ["pointerdown", "pointerup", "keydown", "change"];
 const siblings = new Map(); // the workbenches of one model on this page, which show one text
 
 class Workbench {
@@ -25,6 +26,8 @@ class Workbench {
     this.root.workbench = this; // for tests, and for whoever looks into the page
     el.append(this.root);
     followSystem();
+    this.onTouch = (event) => this.touched(event);
+    for (const name of TOUCHES) document.addEventListener(name, this.onTouch, true);
     model.on("msg:custom", this.onMessage);
     if (!siblings.has(this.key)) siblings.set(this.key, new Set());
     siblings.get(this.key).add(this);
@@ -39,7 +42,18 @@ class Workbench {
     return this.root.closest(".jupyter-widgets-disconnected") !== null;
   }
 
+  /** Knobs and rig go to the kernel by ipywidgets; asked for an answer after that, it is seen to be late for them too. */
+  touched({ type, target }) {
+    const ours = this.root.closest(".thermicon")?.contains(target) && !this.root.contains(target);
+    const turned = this.held && type === "pointerup"; // a knob may be let go beside it
+    if (!turned && !(ours && (type === "change" || target.closest(".thermicon-knobs")))) return;
+    this.held = type === "pointerdown";
+    this.turned = true;
+    setTimeout(() => this.view?.ask?.({ type: "hello" }), 0);
+  }
+
   showLate(late) {
+    this.again ||= late && this.turned;
     const { unsaved } = this.view ?? {};
     const text = unsaved?.place ? (unsaved.works ? "; your text is saved in this page" : "; copy your text first") : "";
     this.banner.hidden = !late;
@@ -49,7 +63,7 @@ class Workbench {
     this.age();
   }
 
-  /** Whether what is shown is older than the text is known here: what a view was asked and has not drawn, and silence. */
+  /** Silence, and what a view was asked and has not drawn, are true of all views of the model. */
   age() {
     const all = [...(siblings.get(this.key) ?? [])].filter(({ view }) => view?.age);
     const late = all.some(({ flow }) => flow.late);
@@ -85,11 +99,11 @@ class Workbench {
     const frame = VIEWS[kind].read(meta, buffers);
     this.view.drawn = this.flow.answered;
     this.view.show(frame);
+    this.repeat();
     this.age();
-    if (frame.troubles) this.sayTroubles(frame.troubles);
+    if (frame.troubles && !this.view.textPending) this.sayTroubles(frame.troubles);
     this.root.dataset.seq = frame.seq;
     if (kind === "design") nameControls(this.root);
-    this.repeatText();
     const drawn = performance.now();
     measure(kind, { seq: frame.seq, sent_ms: sent, arrived_ms: arrived, drawn_ms: drawn, kernel_ms: frame.ms, draw_ms: drawn - began });
   }
@@ -99,7 +113,7 @@ class Workbench {
     this.kind = kind;
     this.root.dataset.view = kind;
     this.view = new VIEWS[kind].make(this.root, this.flow, this.say, typeof this.key === "string" ? this.key : uniqueId("model"));
-    this.view.onAsked = () => this.age();
+    this.view.onNewer = () => this.age();
     this.view.onLocalText = (text) => this.tellSiblings((view) => view.takeText?.(text));
   }
 
@@ -108,9 +122,16 @@ class Workbench {
     for (const other of siblings.get(this.key)) if (other !== this && other.view) tell(other.view);
   }
 
-  /** A text whose answer got lost is sent again as soon as the kernel shows life. */
-  repeatText() {
-    if (this.view.textPending && this.flow.inFlight === null && this.flow.waiting.size === 0) this.view.edited(this.view.editor.text);
+  /** What got no answer is sent again as soon as the kernel shows life; last, what ipywidgets held back is asked for. */
+  repeat() {
+    const { flow, view } = this;
+    if (!view.ask || flow.inFlight !== null || flow.waiting.size > 0) return;
+    if (view.textPending) view.edited(view.editor.text);
+    else if (view.asked > flow.answered) view.ask(view.question);
+    else if (this.again) {
+      this.again = this.turned = false;
+      view.ask({ type: "hello" });
+    }
   }
 
   sayTroubles(troubles) {
@@ -122,6 +143,7 @@ class Workbench {
   stop() {
     cancelAnimationFrame(this.raf);
     clearInterval(this.watch);
+    for (const name of TOUCHES) document.removeEventListener(name, this.onTouch, true);
     this.model.off?.("msg:custom", this.onMessage);
     this.flow.stop();
     this.say.cancel();

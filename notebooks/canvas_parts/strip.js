@@ -3,14 +3,20 @@
 class Strip {
   /** `onGoal(text)` receives a goal that was typed. */
   constructor(onGoal, say) {
-    Object.assign(this, { say, said: null, older: false, told: null });
+    Object.assign(this, { say, said: null, older: false, told: null, aimed: "" });
     const input = { type: "text", class: "tm-goal", placeholder: "90 % felt-and-named", title: "goal of the set, kept in its text", maxlength: 300 };
-    this.goal = make("input", { ...input, onchange: () => onGoal(this.goal.value) });
+    const aim = () => {
+      if (this.goal.value === this.aimed) return;
+      this.aimed = this.goal.value;
+      onGoal(this.aimed);
+    };
+    // In JupyterLab, Enter makes no change event.
+    this.goal = make("input", { ...input, onchange: aim, onkeydown: ({ key }) => key === "Enter" && aim() });
     const number = () => make("b", {}, "–");
     Object.assign(this, { whole: number(), icon: number(), felt: number(), met: make("b", { class: "tm-met" }) });
     this.element = make("div", { class: "tm-strip", role: "group", "aria-label": "Predictions", "data-lm-suppress-shortcuts": "true" },
-      make("span", {}, "set ", this.whole, " felt and named"), make("label", {}, "goal ", this.goal, this.met),
-      make("span", {}, "icon ", this.icon, " felt and named, felt by ", this.felt));
+      make("span", {}, "felt and named: set ", this.whole), make("label", {}, "goal ", this.goal, this.met),
+      make("span", {}, "icon ", this.icon, ", felt by ", this.felt));
   }
 
   /** The numbers stay, pale; whether a goal is met is not known of another text. */
@@ -26,7 +32,7 @@ class Strip {
     for (const [part, name] of [[this.whole, "set"], [this.icon, "icon"], [this.felt, "felt"]]) {
       setText(part, given[name] === "–" ? "–" : nearly + given[name]);
     }
-    if (given.goal !== this.said?.goal) this.goal.value = given.goal;
+    if (given.goal !== (this.said?.goal ?? "")) this.goal.value = this.aimed = given.goal;
     const judged = older ? "? not judged" : { true: "✓ met", false: "✕ not met" }[given.met] ?? "?";
     setText(this.met, given.goal ? judged : "");
     this.met.title = older ? "" : given.binding;

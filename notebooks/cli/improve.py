@@ -14,7 +14,7 @@ from thermicon.perception.selection.request import Objective
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import bars_aside, fail, note, progress_bar, shown_at_once, usage
-from ..report.following import Command, after_choice, after_choices, largest
+from ..report.following import Command, after_choice, after_choices, after_searching, largest
 from ..report.improve_report import edits_report, frontier_report, search_report
 from ..report.rank_report import rank_report
 from ..report.set_report import SetReport, cures, report_of
@@ -37,9 +37,13 @@ from .options import (
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
-    from thermicon.icons import IconSet
+    from thermicon.icons import Icon, IconSet
     from thermicon.perception import Goal, Ranking
+    from thermicon.perception.observer.observer_model import Crowd
+    from thermicon.perception.ranking.batches import Job
+    from thermicon.perception.selection.advice import Way
     from thermicon.perception.selection.frontier import Frontier
+    from thermicon.perception.selection.goal_result import GoalResult
     from thermicon.perception.selection.search import SearchResult
 
     from ..report.blocks import Block
@@ -139,7 +143,13 @@ def improve_command(
             else:
                 write_frame(tried.to_frame(), path)
         figure.write(lambda: tried.plot().figure)
-        told = frontier_report(tried, icons.title, after_choices(tried, command, written if best else None))
+        ways: tuple[Way, ...] = ()
+        if best is None and tried.goals:
+            point, reached = tried.nearest
+            ways = _on_contacts(tried.job, tried.crowd, [icons[name] for name in point.icons], reached, tried.draws)
+        way = next((way for way in ways if way.result.met), None)
+        following = after_choices(tried, command, written if best else None, way)
+        told = frontier_report(tried, icons.title, following, ways)
         if written is not None and best is None:
             refused = f"no choice {'meets the goal' if tried.goals else 'is distinguishable'}, and no set was written"
     elif searched:
@@ -155,10 +165,10 @@ def improve_command(
         missed = ", which misses the goal" if made.goal is not None and not made.goal.met else ""
         for path in outputs:
             if path.suffix == ".cue" and made.choice is not None:
-                write_text(str(_written(icons, made.choice.icons, where)), path, missed)
+                write_text(str(set_to_write(icons, made.choice.icons, where)), path, missed)
             elif path.suffix == ".cue":
                 if made.edited is None:
-                    why = "no edit that was tried meets the goal" if made.ways else "there is no edit to write"
+                    why = "no edit that was tried meets the goal" if missed else "there is no edit to write"
                     refused, written = f"{why}, and no set was written", None
                 else:
                     write_text(str(_edited(icons, made.edited, where)), path, missed * (made.way is None))
@@ -269,10 +279,11 @@ def _best_of(found: Frontier, icons: IconSet, rig: Rig) -> IconSet | None:
     if (count := largest(found)) is None:
         return None
     names = next(point.icons for point in found.points if len(point.icons) == count)
-    return _written(icons, names, rig)
+    return set_to_write(icons, names, rig)
 
 
-def _written(icons: IconSet, names: Sequence[str], rig: Rig) -> IconSet:
+def set_to_write(icons: IconSet, names: Sequence[str], rig: Rig) -> IconSet:
+    """Some icons of a set as a set of the run: with its site and baseline, under the names that a file gives them."""
     from thermicon.perception.selection.candidates import Candidate, set_of_run
 
     return set_of_run(icons, [Candidate(icons[name]) for name in names], rig, f"best {len(names)}")
@@ -299,7 +310,7 @@ def _alone(names: Sequence[str], icons: IconSet, rig: Rig, how: dict[str, Any]) 
     from thermicon.perception import rank
 
     asked = {name: value for name, value in how.items() if name != "goal"}
-    return rank(_written(icons, names, rig), rig, **asked, parameters=0)
+    return rank(set_to_write(icons, names, rig), rig, **asked, parameters=0)
 
 
 def beside_start(
@@ -323,4 +334,16 @@ def beside_start(
         rankings = [rank(each, rig, **asked, progress=bar) for each in (start, found.found)]
     figure.write_set(rankings[1])
     before, after = (SetReport(each, goal=None if goal is None else judge_goal(goal, each)) for each in rankings)
-    return search_report(found, before, after, icons.title, after_choice(after, command, written))
+    if after.goal is not None and not after.goal.met:
+        made = rankings[1]
+        after = replace(after, ways=_on_contacts(made.job, made.crowd, made.job.icons, after.goal, asked["parameters"]))
+    return search_report(found, before, after, icons.title, after_searching(after, command, written))
+
+
+def _on_contacts(job: Job, crowd: Crowd, icons: Sequence[Icon], missed: GoalResult, draws: int) -> tuple[Way, ...]:
+    """Larger contacts, tried with icons that miss a goal until one meets it."""
+    from thermicon.perception.selection.advice import contacts_to, until_met
+
+    if shown_at_once():
+        note("trying larger contacts …")
+    return until_met(contacts_to(job, crowd, icons, missed, draws))

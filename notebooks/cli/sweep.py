@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -19,10 +18,10 @@ from ..messages import Progress, fail, note, progress_bar, usage
 from ..report.run_report import sweep_lines, sweep_report
 from ..report.terminal import show
 from .options import (
+    MOST_DRAWS,
     FigureOptions,
     FileName,
     IconName,
-    Intervals,
     People,
     RigOptions,
     Seed,
@@ -210,7 +209,7 @@ def sweep_command(
         ),
     ] = None,
     people: People = 60,
-    intervals: Intervals = 64,
+    intervals: Annotated[int, opt("N", "Draws of the posterior for intervals; 0 for none.", 0, MOST_DRAWS)] = 64,
     seed: Seed = 0,
     tail: Tail = 0.0,
 ) -> None:
@@ -247,17 +246,17 @@ def sweep_command(
     if output is not None:
         write_frame(frame, output)
     elif what:
-        again = command_text([file], rig, paths=True)
-        show([*sweep_report(frame, key, what), f"Next: take a value that helps into the rig, then {again}"])
+        again = command_text([file], rig, paths=True) + f" --set {key}=VALUE" * (key not in (SITE, AGE))
+        show([*sweep_report(frame, key, what), f"Next: {again}, with a value that helps"])
 
 
 def read_measures(text: str, intervals: int) -> tuple[str, ...]:
     """Read ``--measure``, beside the draws for intervals; what cannot be is a usage error."""
-    from thermicon.perception.selection.goal import other_word, word_of
+    from thermicon.perception.selection.goal import other_word, quantity_of, word_of
 
     if (offer := other_word(text)) is not None:
         note(offer)
-    names = tuple(re.sub(r"^correct(?![a-z])", "named", name.strip().replace("-", "_")) for name in text.split(","))
+    names = tuple(quantity_of(name.strip()) for name in text.split(","))
     for name in names:
         if name not in MEASURES:
             raise usage(f"{name!r} is not one of {', '.join(map(word_of, MEASURES))}", "--measure")

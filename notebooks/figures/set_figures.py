@@ -58,7 +58,7 @@ def set_figure(ranking: Ranking, look: Look = SCREEN) -> Figure:
 
 
 def observed_figure(found: Observed[Any, Any], look: Look = SCREEN) -> Any:
-    """Draw observed beside predicted answers, and per cent correct before and after; of measurements that alone."""
+    """Draw observed beside predicted answers, and felt and named before and after; of measurements that alone."""
     from thermicon.perception.pilot.conditioning import Namings
 
     if not isinstance(found.data, Namings):

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from thermicon.perception.selection.choose import Choice
     from thermicon.perception.selection.goal_result import GoalPartResult, GoalResult
 
+MOST_WAYS = 3
+"""Of the ways to a goal that were tried so many are shown, and the others counted."""
 SHARE = "For a share of people: what at least so many reach, with the uncertainty of the model."
 NAMES = {"worst": "the worst pair", "felt-and-named": "felt and named", "named": "the proportion named correctly",
          "bits": "bits", "bits-per-s": "bits per second"}  # fmt: skip
@@ -23,8 +25,8 @@ NAMES = {"worst": "the worst pair", "felt-and-named": "felt and named", "named":
 def goal_lines(goal: GoalResult, verdict: str = "", ways: Sequence[Way] = ()) -> Iterator[str]:
     """Report whether a goal is met, or another `verdict`: what was predicted of each part, and what is in the way.
 
-    What a share of people means is said too, unless a `verdict` is given, whose command says it with its table. `ways`
-    that were tried come with the part that is missed most, before and after.
+    What a share of people means is said too, unless a `verdict` is given, whose command says it with its table. The
+    `ways` that came nearest, of those tried, come with the part that is missed most, before and after.
     """
     yield f"Goal: {verdict or ('met' if goal.met else 'NOT met')}"
     for each in goal.parts:
@@ -34,7 +36,10 @@ def goal_lines(goal: GoalResult, verdict: str = "", ways: Sequence[Way] = ()) ->
     if goal.binding:
         yield f"  In the way: {'; '.join(goal.binding)}"
     worst = min(goal.parts, key=lambda part: part.margin)
-    for way in ways:
+    nearest = sorted(range(len(ways)), key=lambda k: -ways[k].result.margin)[:MOST_WAYS]
+    if others := len(ways) - len(nearest):
+        yield f"  Tried, and farther from the goal: {count_of(others, 'other way')}"
+    for way in (ways[k] for k in sorted(nearest)):
         after, which = way.after(worst), f"{word_of(worst.part.quantity)}{worst.part.whose}"
         met = "which meets the goal" if way.result.met else "which misses the goal"
         yield f"  Tried: {way_words(way)}: {which} {_said(worst)} → {_said(after)}, {met}"

@@ -10,6 +10,7 @@ from thermicon.base.words.number_text import listed
 
 if TYPE_CHECKING:
     from thermicon.perception import Goal
+    from thermicon.perception.selection.advice import Way
     from thermicon.perception.selection.frontier import Frontier
 
     from .set_report import SetReport
@@ -51,16 +52,29 @@ def after_simulating(cured: list[str], lost: list[str], command: Command) -> str
     return f"{way}, then {command('rank')}"
 
 
-def after_choices(found: Frontier, command: Command, written: str | None) -> str:
-    """The largest choice that meets the goal, or whose icons are all distinguishable: to be written, or exported."""
+def after_choices(found: Frontier, command: Command, written: str | None, way: Way | None = None) -> str:
+    """The largest choice that meets the goal, or whose icons are all distinguishable: to be written, or exported.
+
+    Where none does, the `way` in which the nearest meets it.
+    """
     if written is not None:
         return command("export", *PLAYED, file=written)
-    count = largest(found)
+    count, hardware = largest(found), list[str]()
+    if way is not None:
+        count, hardware = len(found.nearest[0].icons), _contact(way)
     if count is None:
         those = "of these icons" if all(point.optimal for point in found.points) else "that was looked at"
         return f"no choice {those} {'meets the goal' if found.goals else 'is distinguishable'}. {OTHER}"
     objective, goal = found.points[0].objective, _goal(found.goals[0].goal if found.goals else None)
-    return command("improve", "--choose", str(count), "--objective", objective, *goal, "-o", "best.cue")
+    return command("improve", "--choose", str(count), "--objective", objective, *hardware, *goal, "-o", "best.cue")
+
+
+def after_searching(found: SetReport, command: Command, written: str | None) -> str:
+    """To export the set that was found, or to play it on the larger contact with which it meets its goal."""
+    if found.way is None or found.goal is None:
+        return after_choice(found, command, written)
+    hint = "" if written else "add -o best.cue, then "
+    return hint + command("rank", *_contact(found.way), *_goal(found.goal.goal), file=written or "best.cue")
 
 
 def after_choice(found: SetReport, command: Command, written: str | None) -> str:
@@ -78,17 +92,19 @@ def _by_way(found: SetReport, command: Command) -> str:
     assert found.goal is not None
     way, goal = found.way, _goal(found.goal.goal)
     if way is None:
-        none = "Nothing that was tried meets the goal. " if found.ways else ""
-        return f"{'; '.join(found.goal.binding)}. {none}{OTHER}"
+        return f"{'; '.join(found.goal.binding)}. Nothing that was tried meets the goal. {OTHER}"
     if way.edits:
         return command("improve", "--edits", *goal, "-o", "edited.cue")
     if way.choice is not None:
         kept = [word for name in way.must for word in ("--must", name)]
         return command("improve", "--choose", str(len(way.choice.icons)), *kept, *goal, "-o", "best.cue")
-    larger = ("--set", f"contact.area_cm2={way.area_cm2:g}")
     if found.choice is None:
-        return command("rank", *larger, *goal)
-    return command("improve", "--choose", str(len(found.choice.icons)), *larger, *goal, "-o", "best.cue")
+        return command("rank", *_contact(way), *goal)
+    return command("improve", "--choose", str(len(found.choice.icons)), *_contact(way), *goal, "-o", "best.cue")
+
+
+def _contact(way: Way) -> list[str]:
+    return ["--set", f"contact.area_cm2={way.area_cm2:g}"]
 
 
 def _after_edits(found: SetReport, command: Command, written: str | None) -> str:

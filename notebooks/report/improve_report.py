@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from thermicon.base.words.number_text import count_of, number, percent, percent_span
@@ -13,6 +13,7 @@ from .rank_details import crowd_text, edit_text, trouble_lines
 from .rank_report import BARELY
 
 if TYPE_CHECKING:
+    from thermicon.perception.selection.advice import Way
     from thermicon.perception.selection.frontier import Frontier
     from thermicon.perception.selection.search import SearchResult
 
@@ -22,8 +23,11 @@ REFINING_PEOPLE = 24
 """As in `thermicon.perception.selection.search_run`, repeated here to avoid its imports."""
 
 
-def frontier_report(found: Frontier, title: str, following: str = "") -> list[Block]:
-    """Report one row for each number of icons, the largest choice, what was left out, and what follows."""
+def frontier_report(found: Frontier, title: str, following: str = "", ways: Sequence[Way] = ()) -> list[Block]:
+    """Report one row for each number of icons, the largest choice, what was left out, and what follows.
+
+    `ways` were tried with the choice that comes nearest to a goal that none meets.
+    """
     heads = (
         "icons",
         "felt and named",
@@ -58,7 +62,7 @@ def frontier_report(found: Frontier, title: str, following: str = "") -> list[Bl
     said = [
         f"The {len(named.icons)}{' that meet the goal' * bool(met)}: {names}",
         *(["* not proven to be the best of their number"] * any(not point.optimal for point in found.points)),
-        *_goal(found),
+        *_goal(found, ways),
         *left_out(largest.excluded),
         *([f"Next: {following}"] if following else []),
     ]
@@ -75,15 +79,16 @@ def frontier_report(found: Frontier, title: str, following: str = "") -> list[Bl
     ]
 
 
-def _goal(found: Frontier) -> Iterator[str]:
-    """The largest choice that meets the goal with its parts, or the smallest with what is in its way."""
-    judged = [(len(point.icons), goal) for point, goal in zip(found.points, found.goals, strict=False)]
+def _goal(found: Frontier, ways: Sequence[Way]) -> Iterator[str]:
+    """The largest choice that meets the goal with its parts, or the nearest with what is in its way."""
+    judged = list(zip(found.points, found.goals, strict=False))
     if met := [each for each in judged if each[1].met]:
-        count, result = met[-1]
-        more = "the largest choice here" if count == judged[-1][0] else "by no larger choice of these"
-        yield from goal_lines(result, f"met by the best {count}, {more}")
-    for count, result in judged[:1] if not met else ():
-        yield from goal_lines(result, f"met by none of these choices; the best {count}:")
+        point, result = met[-1]
+        more = "the largest choice here" if point is judged[-1][0] else "by no larger choice of these"
+        yield from goal_lines(result, f"met by the best {len(point.icons)}, {more}")
+    elif judged:
+        point, result = found.nearest
+        yield from goal_lines(result, f"met by none of these choices; the best {len(point.icons)}:", ways)
 
 
 def _reached(found: Frontier) -> str:
@@ -102,14 +107,15 @@ def edits_report(made: SetReport, title: str, following: str) -> list[Block]:
         pair = next(each for each in ranking.pairs if {each.a, each.b} == {a, b})
         if text := edit_text(made, pair):
             said.append(f"{a} and {b}, d′ {number(pair.d_prime)}: {text}")
-    effect = "No edit that was tried meets the goal." if made.ways else "No pair has an edit that helps."
+    missed = made.goal is not None and not made.goal.met
+    effect = "No edit that was tried meets the goal." if missed else "No pair has an edit that helps."
     if after is not None and after.worst is not None:
         effect = (
             f"With {'the edits that meet the goal' if made.way else 'these edits'}: felt and named "
             f"{percent(ranking.felt_and_named)} → {percent(after.felt_and_named)}, worst pair {after.worst.a} and "
             f"{after.worst.b}, d′ {number(after.worst.d_prime)}."
         )
-    elif not said:
+    elif not said and not missed:
         effect = "Every pair is distinguishable: no edit is needed." if ranking.pairs else "There is no pair to edit."
     return [
         *([Heading(title, 1)] if title else []),
@@ -131,10 +137,10 @@ def search_report(found: SearchResult, before: SetReport, after: SetReport, titl
     said.append(f"Before: {', '.join(icon.name for icon in found.start)}")
     goal: list[Block] = []
     if after.goal is not None:
-        goal.append(Text("\n".join(goal_lines(after.goal))))
-        goal += (
-            [] if after.goal.met else [Text("Not reached by this search: more --evaluations may find a better set.")]
-        )
+        goal.append(Text("\n".join(goal_lines(after.goal, ways=after.ways))))
+        if not after.goal.met:
+            stays = "".join(f", and {name}, which is no family, stays" for name in _in_the_way(found, after))
+            goal.append(Text(f"Not reached by this search: more --evaluations may find a better set{stays}."))
     return [
         *([Heading(title, 1)] if title else []),
         Text("Found:"),
@@ -171,6 +177,14 @@ def _scores(found: SearchResult, before: SetReport, after: SetReport) -> Iterato
     yield "information, bits", f"{a.information_bits:.2f}", f"{b.information_bits:.2f}"
     yield "information rate, bits/s", f"{a.bits_per_s:.2f}", f"{b.bits_per_s:.2f}"
     yield "total duration, s", number(pair[0].total_s), number(pair[1].total_s)
+
+
+def _in_the_way(found: SearchResult, after: SetReport) -> list[str]:
+    """The icon that is felt and named least, where no search changes it."""
+    from thermicon.perception.selection.candidates import FOUND
+
+    least = min(after.ranking.icons, key=lambda icon: icon.felt_and_named).name
+    return [icon.name for icon in found.found if icon.name == least and FOUND not in icon.metadata.tags]
 
 
 def _remarks(found: SearchResult, after: SetReport) -> Iterator[str]:

@@ -70,7 +70,7 @@ def opened_reports(found: SealedScores) -> str:
     seen, said, p = found.felt_and_named
     return (
         f"Felt and named: {percent(seen)} of {found.trials + found.unanswered} plays; it says {percent(said)}. Its "
-        f"icons are {'not what' if p < POOR else 'what'} it says: p = {p_text(p)} in independent trials."
+        f"icons are {'not what' if p < POOR else 'what'} it says: {p_text(p)} in independent trials."
     )
 
 
@@ -172,7 +172,7 @@ def measured_sentences(found: Observed[MeasuredValues, MeasurementFit]) -> list[
     if values.total < LEAST_VALUES:
         verdict = f"{values.total} values are too few to judge the model by; {LEAST_VALUES} or more can"
     lines.append(
-        f"Test of fit (posterior predictive): p = {p_text(before)} before, {p_text(after)} after the values were used: "
+        f"Test of fit (posterior predictive): {p_text(before)} before, {p_text(after)} after the values were used: "
         f"{verdict}"
     )
     if count := values.assumed_errors:
@@ -261,7 +261,7 @@ def fit_sentences(found: Observed[Namings, Fit]) -> list[str]:
         f"{percent(float(seen.trace() / seen.sum()))}, {pooled.information_bits_plugin:.2f} bits. This prediction is "
         "the median of experiments with as many participants and trials; that of the set, below, is the mean over "
         "people and laboratories, so the two may differ.",
-        f"Test of fit (posterior predictive): p = {p_text(fit.p)} before, {p_text(found.fit_after.p)} after the "
+        f"Test of fit (posterior predictive): {p_text(fit.p)} before, {p_text(found.fit_after.p)} after the "
         f"answers were used{_verdict(found)}",
     ]
     if fit.p_people is not None:
@@ -280,7 +280,7 @@ def reports(found: Observed[Namings, Fit]) -> list[Block]:
         verdict = f"{pooled.trials} trials are too few to judge the model by; {LEAST_TRIALS} or more can"
     text = (
         f"Predicted for this experiment: {percent(middle)} felt and named ({percent_span(low, high)}). Observed: "
-        f"{percent(pooled.proportion_correct)}.\nTest of fit of the plays that were felt: p = {p_text(fit.p_reports)} "
+        f"{percent(pooled.proportion_correct)}.\nTest of fit of the plays that were felt: {p_text(fit.p_reports)} "
         f"before, {p_text(found.fit_after.p_reports)} after the answers were used: {verdict}"
     )
     points = [
@@ -311,7 +311,7 @@ def pairs(fit: Fit) -> list[Block]:
 
 def p_text(p: float) -> str:
     """A p as people write it."""
-    return "under 0.01" if p < 0.01 else f"{p:.2f}"
+    return "p under 0.01" if p < 0.01 else f"p = {p:.2f}"
 
 
 def _verdict(found: Observed[Namings, Fit]) -> str:

@@ -161,7 +161,7 @@ def icon_parts(ranking: Ranking, icons: IconSet, rig: Rig) -> Iterator[Block]:
     for place, (icon, score) in enumerate(zip(members, ranking.icons, strict=True)):
         yield Heading(icon.name, 3)
         facts = [
-            f"{percent(score.proportion_correct)} correct",
+            f"{percent(score.felt_and_named)} felt and named",
             f"reported in {percent(score.detected_probability)} of the trials of all people",
         ]
         cold, warm = (f"{number(peak, 2)} K at the" for peak in score.peak_change_K)

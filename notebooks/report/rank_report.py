@@ -25,8 +25,9 @@ BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
 MOST_CONSTANTS = 12
 """Constants in the table of what carries the doubt; a file has them all."""
-RANKED = ("icon", "detected", "onset", "channel", "felt+named", "most confused with")
-NAMED = "named"
+ALERT, NAMED = "felt+named", "named"
+RANKED = ("icon", "detected", "onset", "channel", ALERT, "most confused with")
+RANKED_BOTH = ("icon", "detected", "onset", ALERT, NAMED, "most confused with")  # without channel a row has 80 columns
 A_POINT = 0.01
 """Where felt and named is less than named by more for any icon, both are shown."""
 
@@ -152,13 +153,13 @@ def differs(icons: Sequence[IconScore]) -> bool:
 def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = None) -> Grid:
     """One row per icon, the chosen first, else in this order; those unsafe or not reached have a star and stand apart.
 
-    Of more than `most`, or than are chosen, the last row says how many were left out.
+    Of more than `most`, or than are chosen, one row says how many were left out; the last icon stays.
     """
     apart, labels = sum(icon.playable for icon in icons), made.ranking.labels
     chosen = () if made.choice is None else made.choice.icons
     icons = sorted(icons, key=lambda icon: icon.name not in chosen)
     both = differs(icons)
-    heads = (*RANKED[:3], RANKED[4], NAMED, RANKED[5]) if both else RANKED  # without channel a row has 80 columns
+    heads = RANKED_BOTH if both else RANKED
     rows: list[tuple[str | Cell, ...]] = [
         (
             f"{'✓ ' * (icon.name in chosen)}{icon.name}{' *' * (place >= apart)}",
@@ -172,8 +173,10 @@ def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = N
         for place, icon in enumerate(icons)
     ]
     if most is not None and len(rows) > (most := max(most, len(chosen))) + 1:
-        rows = [*rows[:most], (f"and {len(rows) - most} more", *[""] * (len(heads) - 1))]
-    return grid(heads, rows, ("detected", "onset", RANKED[4], NAMED), heads, apart)
+        rest = (f"and {len(rows) - most} more", *[""] * (len(heads) - 1))
+        rows = [*rows[:most], rest] if chosen else [*rows[: most - 1], rest, rows[-1]]
+        apart = min(apart, len(rows) - (apart < len(icons)))
+    return grid(heads, rows, ("detected", "onset", ALERT, NAMED), heads, apart)
 
 
 def rival(ranking: Ranking, place: int) -> str:
@@ -188,7 +191,7 @@ def rival(ranking: Ranking, place: int) -> str:
 
 def doubt_report(found: Sensitivity, title: str) -> list[Block]:
     """Report one row per constant that counts, the most important first, and what to measure first."""
-    numbers = ("correct", "bits", "correct low–high")
+    numbers = ("named", "bits", "named low–high")
     rows = [
         (
             effect.constant,

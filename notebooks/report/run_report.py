@@ -179,8 +179,9 @@ def sweep_report(frame: pd.DataFrame, key: str, quantities: Sequence[str]) -> li
     of_icons = not {*quantities} <= {*OF_THE_SET}
     rows = []
     for row in frame.to_dict("records"):
-        if of_icons or row["icon"] == ALL:
-            rows.append((str(row["icon"]), _value(row[key]), *(_cell(row, quantity) for quantity in quantities)))
+        cells = [_cell(row, quantity) for quantity in quantities]
+        if {*cells} != {"–"} if row["icon"] == ALL else of_icons:
+            rows.append((str(row["icon"]), _value(row[key]), *cells))
     columns = ("icon", key, *quantities)
     return [grid(columns, rows, (key,), columns)]
 

@@ -85,7 +85,7 @@ def report_of(
     from thermicon.perception import choose, rank
     from thermicon.perception.kernels.parallel import beside, step_counter
     from thermicon.perception.ranking.rank import with_intervals
-    from thermicon.perception.selection.advice import Way, compatible, ranked_as, ways_to, with_edits
+    from thermicon.perception.selection.advice import Way, compatible, ranked_as, until_met, ways_to, with_edits
     from thermicon.perception.selection.edit import cheapest_edits
     from thermicon.perception.selection.goal_result import judge_goal
     from thermicon.perception.selection.request import check_selection
@@ -111,13 +111,10 @@ def report_of(
     if reached is not None and not reached.met:
         if shown_at_once():
             note("trying ways to the goal …")
-        for way in ways_to(ranking, reached, draws, found, choice, () if choosing is None else choosing.must):
-            ways += (way,)
-            if way.result.met:
-                break
+        ways = until_met(ways_to(ranking, reached, draws, found, choice, () if choosing is None else choosing.must))
     made = SetReport(ranking, choice, reached, found, warnings, ways)
     if make_edits and (some := made.way.edits if made.way else compatible(list(found.values()))):
-        after = ranked_as(ranking, with_edits(ranking.job.icons, some), draws if goal else 0)
+        after = ranked_as(ranking.job, ranking.crowd, with_edits(ranking.job.icons, some), draws if goal else 0)
     return replace(made, edited=after)
 
 

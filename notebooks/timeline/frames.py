@@ -82,6 +82,7 @@ def frame_of(scene: Scene, points: int = MOST_POINTS) -> CanvasFrame:
         "view": "design",
         "icons": list(scene.names),
         "icon": scene.icon,
+        "of": scene.text,
         "troubles": [asdict(each) for each in scene.troubles],
         "stale": scene.stale,
         "badge": {"colour": badge.colour, "text": badge.text, "more": list(badge.more)},

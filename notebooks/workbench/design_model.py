@@ -114,7 +114,9 @@ class DesignModel:
         try:
             shown = act()
         except Exception as wrong:  # a page that goes silent is worse than any sentence
-            self.scene = with_notes(self.scene, f"the action failed: {wrong or type(wrong).__name__}")
+            told = with_notes(self.scene, f"the action failed: {wrong or type(wrong).__name__}")
+            left = (told.text, told.rig) != (self.text, self.rig)  # as they are now, nothing was drawn or judged
+            self.scene = replace(told, stale=told.stale or left)
             shown = self.text
         try:
             made = frame_of(self.scene, DRAGGED_POINTS if self._moving else MOST_POINTS)

@@ -25,7 +25,7 @@ from ..observer.observer import Observer, variant_records
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People, draw_people
 from ..sensation.detection import pooled
-from .measures import information_bits, proportion_correct
+from .measures import felt_and_named, information_bits, proportion_correct
 from .population import ReceptorTemperatures, identify, respond
 from .task import USUAL, Task
 
@@ -252,8 +252,7 @@ def scored(
     reported = found.courses[invited].sum(axis=0)
     reports = pooled(found.probability[invited], found.cold_share[invited], reported, found.dt_s)
     correct, bits, apart = correct[invited], bits[invited], np.median(d_prime[invited], axis=0)
-    # For each person before any mean: who is less sensitive feels less and confuses more.
-    alert = (found.probability * np.diagonal(confusion.probability, axis1=1, axis2=2))[invited]
+    alert = felt_and_named(found.probability, confusion.probability)[invited]
     of_set = correct.mean(), bits.mean(), reports.probability, apart, reports.onset_s, 0.5 * (named + named.T)
     single = correct, bits, found.probability[invited].min(axis=1), alert.mean(axis=1)
     return *of_set, alert.mean(axis=0), alert.mean(), *single

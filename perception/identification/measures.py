@@ -24,6 +24,19 @@ def proportion_correct(confusion: ArrayLike) -> Array:
     return found
 
 
+def felt_and_named(reported: ArrayLike, confusion: ArrayLike) -> Array:
+    """Shares of plays (..., m) that are reported and named correctly, where a play that is not felt is a miss.
+
+    Of people one by one: who is less sensitive feels less, and confuses more or less. `reported` (..., m) are
+    probabilities of a report, taken as independent of the name given the person; `confusion` is (..., m, m).
+
+    >>> felt_and_named([0.5, 1.0], [[0.9, 0.1], [0.3, 0.7]]).tolist()
+    [0.45, 0.7]
+    """
+    named: Array = np.diagonal(np.asarray(confusion), axis1=-2, axis2=-1)
+    return np.asarray(np.asarray(reported) * named)
+
+
 @checked
 def information_bits(confusion: ArrayLike) -> Array:
     """Compute the information from icon to response in bits, with every icon presented equally often.

@@ -148,11 +148,8 @@ def new_laboratory(
     persons_correct = np.clip(each.persons_correct + shifts["proportion_correct"], 0.0, 1.0)
     # What is felt and named was named: shifts of their own must not take it above that.
     alert_shift, named = shifts["each_felt_and_named"], np.diagonal(moved["confused"], axis1=1, axis2=2)
-    most = np.minimum(moved["proportion_correct"], 1.0)
-    moved["each_felt_and_named"] = np.clip(
-        each.each_felt_and_named + alert_shift, 0.0, np.where(np.isnan(named), 1.0, named)
-    )
-    alert = np.clip(each.each_felt_and_named.mean(axis=1) + alert_shift.mean(), 0.0, most)
+    moved["each_felt_and_named"] = np.clip(each.each_felt_and_named + alert_shift, 0.0, named)
+    alert = np.clip(each.felt_and_named + alert_shift.mean(), 0.0, moved["proportion_correct"])
     persons_alert = np.clip(each.persons_felt_and_named + alert_shift.mean(), 0.0, persons_correct)
     apart, confused = (tuple(np.percentile(moved[name], COVER, axis=0)) for name in ("d_prime", "confused"))
     return NewLaboratory(

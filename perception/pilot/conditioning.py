@@ -171,7 +171,7 @@ class Namings:
         return compare(self.trials, simulated, seed=seed)
 
     def details(self, simulated: Confusions) -> Array:
-        """Proportion correct (laboratories, icons) of each icon."""
+        """Proportion named (laboratories, icons) of each icon."""
         return np.diagonal(simulated.pooled, axis1=1, axis2=2)
 
     def provenance(self, where: str) -> tuple[str, ...]:

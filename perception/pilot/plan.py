@@ -40,7 +40,7 @@ FEWEST = 2
 class ExperimentSize:
     """An experiment of so many participants and trials (each, of each set), and what it is expected to give.
 
-    `width` is that of the 95 % interval of the proportion correct, or of the difference of two sets, which a share
+    `width` is that of the 95 % interval of the proportion named, or of the difference of two sets, which a share
     `found` of experiments distinguishes in the right direction, and `wrong` in the other.
     """
 
@@ -65,7 +65,7 @@ class ExperimentPlan(Tabled):
     predictions
         The prediction of each set.
     difference
-        Proportion correct of the first set less that of the second: mean and 95 % of laboratories (None: one set).
+        Proportion named of the first set less that of the second: mean and 95 % of laboratories (None: one set).
     designs
         All of them, by participants and trials.
     wanted
@@ -143,13 +143,13 @@ def plan(
     icons, rig
         As in `rank`.
     other
-        A second set, to be distinguished from the first by its proportion correct.
+        A second set, to be distinguished from the first by its proportion named.
     crowd
         Who feels and remembers the icons; its observer must have draws of the posterior, as `observed` keeps them.
     participants, trials
         Sizes to try: participants, and trials of each participant with each set.
     wanted
-        Power (two sets, None: 0.8), or width of the 95 % interval of the proportion correct (one set, None: 0.1).
+        Power (two sets, None: 0.8), or width of the 95 % interval of the proportion named (one set, None: 0.1).
     draws
         Draws of the posterior, each with a laboratory around it.
     progress
@@ -245,7 +245,7 @@ def _simulated(played: Sequence[Confusions], people: int, trials: int, seed: np.
 def _shares(
     one: Confusions, where: NDArray[np.int64], invited: NDArray[np.int64], trials: int, rng: np.random.Generator
 ) -> Array:
-    """Proportion correct (experiments, participants) of presentations as even as possible."""
+    """Proportion named (experiments, participants) of presentations as even as possible."""
     icons = len(one.icons)
     chances = np.diagonal(one.probability, axis1=2, axis2=3)[where[:, None], invited].astype(np.float64)
     shown = np.full(chances.shape, trials // icons)

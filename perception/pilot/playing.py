@@ -14,7 +14,7 @@ from thermicon.icons import IconSet
 
 from ..identification.depths import rungs
 from ..identification.laboratory_draws import EVERY, people_for_intervals
-from ..identification.measures import information_bits
+from ..identification.measures import felt_and_named, information_bits
 from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond, run_end_s
 from ..kernels.parallel import in_order
 from ..observer.people import draw_people
@@ -45,12 +45,12 @@ class Confusions:
     @property
     def felt_and_named(self) -> Array:
         """Share felt and named of every laboratory: of each person and icon, before the mean over them."""
-        each = self.reported * np.diagonal(self.probability, axis1=2, axis2=3)
+        each = felt_and_named(self.reported, self.probability)
         return np.asarray(each.mean(axis=(1, 2), dtype=np.float64))
 
     @property
     def correct(self) -> Array:
-        """Proportion correct of every laboratory, as the mean over its people."""
+        """Proportion named of every laboratory, as the mean over its people."""
         each: Array = np.trace(self.probability, axis1=2, axis2=3, dtype=np.float64) / len(self.icons)
         return np.asarray(each.mean(axis=1))
 

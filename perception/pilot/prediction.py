@@ -35,7 +35,7 @@ CHANCE = 6.0
 
 
 SCORES = ("felt_and_named", "proportion_correct", "information_bits")
-"""What is predicted of a set; the proportion correct and bits are those of announced icons."""
+"""What is predicted of a set; the proportion named and bits are those of announced icons."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class ChangedPrediction:
 
     @property
     def narrower(self) -> float:
-        """By which factor the interval of the proportion correct got narrower (below 1: wider)."""
+        """By which factor the interval of the proportion named got narrower (below 1: wider)."""
         return self.narrowed("proportion_correct")
 
     def narrowed(self, score: str) -> float:

@@ -125,7 +125,7 @@ def read_trials(
     if not counts[..., :-2].any():
         if strange[0]:
             _icon(strange[0], "presented", places, strange[1])
-        raise TrialsError(f"{file}: no row has both an icon and an answer of the set; write one row per trial")
+        raise TrialsError(f"{file}: no row has both an icon and an answer of the set: no names are left to score")
     return replace(_counted(counts, names, tuple(runs), file.name, digest), passed=passed)
 
 

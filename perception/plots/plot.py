@@ -107,7 +107,8 @@ def plot_frontier(found: Frontier, ax: Axes | None = None) -> Axes:
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(axis="y", alpha=0.25, linewidth=0.6)
     axes.set_axisbelow(True)
-    axes.set_xlabel(f"number of icons, the best of {first.pool} by {first.objective}\n(above the points: total time)")
+    by = first.objective.replace("-", " ")
+    axes.set_xlabel(f"number of icons, the best of {first.pool} by {by}\n(above the points: total time)")
     axes.set_ylabel("felt and named (%)")
     axes.set_title("How many icons are distinguishable", loc="left")
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8)
@@ -115,14 +116,14 @@ def plot_frontier(found: Frontier, ax: Axes | None = None) -> Axes:
 
 
 def plot_sensitivity(found: Sensitivity, ax: Axes | None = None) -> Axes:
-    """Draw the shares of the constants that count most, proportion correct above bits."""
+    """Draw the shares of the constants that count most, of what is named above bits."""
     shown = found.effects[:MOST]
     axes = new_axes(ax, (7.6, 1.4 + 0.34 * len(shown)))
     names = [effect.constant for effect in shown]
     places = np.arange(len(names))
     correct = np.array([effect.proportion_correct for effect in shown])
     bits = np.array([effect.information_bits for effect in shown])
-    axes.barh(places - HEIGHT / 2, correct, HEIGHT, color="0.3", label="proportion correct")
+    axes.barh(places - HEIGHT / 2, correct, HEIGHT, color="0.3", label="named")
     axes.barh(places + HEIGHT / 2, bits, HEIGHT, color="0.68", label="bits")
     axes.set_yticks(places, names)
     axes.invert_yaxis()
@@ -149,7 +150,7 @@ def plot_observed(found: Observed[Any, Any], ax: Axes | None = None) -> Axes:
     axes.set_ylim(len(places) - 0.5, -1.0)
     axes.spines[["top", "right", "left"]].set_visible(False)
     axes.set_xlabel("felt and named (%), mean over people\nand 95 % of laboratories")
-    axes.set_title("Felt and named before and after the data", loc="left")
+    axes.set_title("Before and after the data", loc="left")
     axes.legend(frameon=False, loc="upper center", ncols=2)
     return axes
 

@@ -1,6 +1,6 @@
 """The constants on which a ranking depends most, found from its own people and draws without simulation.
 
-Contact and outermost layer differ from person to person, so that a regression of the proportion correct on people says
+Contact and outermost layer differ from person to person, so that a regression of the proportion named on people says
 what another contact would do to all of them. The area of contact acts on thresholds alone in the model of perception
 (Stevens' summation), and thresholds differ between people too. Constants of the observer differ from draw to draw.
 
@@ -54,7 +54,7 @@ LEAST_SHARE = 0.02
 
 
 def doubts(each: LaboratoryDraws) -> list[dict[str, str | float]]:
-    """Constants that act on the set, with the share (0–1) of the variance of the proportion correct that would go.
+    """Constants that act on the set, with the share (0–1) of the variance of the proportion named that would go.
 
     Those of at least 2 %, the largest first, with the keys of the ranking file.
     """
@@ -98,7 +98,7 @@ def scores_of(values: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class Assumption:
-    """A quantity that was assumed, two values of it, and the proportion correct (0–1) to be expected at both.
+    """A quantity that was assumed, two values of it, and the proportion named (0–1) to be expected at both.
 
     `key` is its key in the rig file, empty for a constant of the observer; `source` says what it was read from,
     `people` or `draws`; `standard_error` is that of the difference.
@@ -117,7 +117,7 @@ class Assumption:
 
     @property
     def moves(self) -> float:
-        """How far the proportion correct moves between both values."""
+        """How far the proportion named moves between both values."""
         return abs(self.correct_at_high - self.correct_at_low)
 
 
@@ -126,7 +126,7 @@ class Assumptions:
     """The assumptions that move a ranking most, the site's evidence, and what was not varied.
 
     `site` is None where thresholds of the site are on record; else it names the site, the nearest recorded one and
-    the proportion correct if thresholds were twice as high (None: too few people to say).
+    the proportion named if thresholds were twice as high (None: too few people to say).
     """
 
     moving: tuple[Assumption, ...]
@@ -137,7 +137,7 @@ class Assumptions:
 def assumptions_of(
     correct: Array, crowd: People, rig: Rig, observer: Observer, draws: LaboratoryDraws | None
 ) -> Assumptions:
-    """Find what moves the proportion correct of a set most, at most three things; none where all are within chance.
+    """Find what moves the proportion named of a set most, at most three things; none where all are within chance.
 
     `correct` (people,) is that of the people of the crowd, on a rig with its uncertainty of contact. Summation over
     area is the nominal observer's; `draws` are predictions by draws of the posterior (None: there are none).
@@ -153,7 +153,7 @@ def assumptions_of(
 
 @dataclass(frozen=True, slots=True)
 class PeopleFit:
-    """Parabolas of the proportion correct in the logarithms of people's multipliers; (people, columns)."""
+    """Parabolas of the proportion named in the logarithms of people's multipliers; (people, columns)."""
 
     columns: Array
     correct: Array
@@ -179,7 +179,7 @@ class PeopleFit:
         return np.asarray((_design(moved) - _design(self.columns)).mean(axis=0))
 
     def at(self, terms: Array) -> float:
-        """Proportion correct to be expected there, 0–1."""
+        """Proportion named to be expected there, 0–1."""
         return float(np.clip(self.correct.mean() + terms @ self.weights, 0.0, 1.0))
 
     def error(self, terms: Array) -> float:

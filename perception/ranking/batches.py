@@ -192,7 +192,7 @@ class PooledResult(FeltResult):
     """Responses of all people to m icons.
 
     `pooled` (m, m); `each_correct` (people, m) where an icon is announced; `bits`, `plugin` (people,); `other_correct`
-    (m,) proportion correct of each icon by the other form. `standard_error` and `person_standard_error` are the largest
+    (m,) proportion named of each icon by the other form. `standard_error` and `person_standard_error` are the largest
     sampling errors of a cell, pooled and of one person.
     """
 

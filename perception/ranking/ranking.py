@@ -154,17 +154,17 @@ class Ranking(Drawn, Tabled):
 
     @property
     def persons(self) -> tuple[float, ...]:
-        """Proportion correct of every virtual person, 0–1."""
+        """Proportion named of every virtual person, 0–1."""
         return tuple(self.felt.correct.tolist())
 
     @property
     def proportion_correct(self) -> float:
-        """Proportion correct, 0–1: the mean over people."""
+        """Proportion named, 0–1: the mean over people."""
         return float(self.felt.correct.mean())
 
     @property
     def proportion_correct_interval(self) -> tuple[float, float]:
-        """Proportion correct of the middle 95 % of people."""
+        """Proportion named of the middle 95 % of people."""
         return interval_of(self.felt.correct)
 
     @property
@@ -226,7 +226,7 @@ class Ranking(Drawn, Tabled):
 
     @property
     def memory_sensitivity(self) -> dict[str, float]:
-        """Proportion correct of the set by the other form of memory, under its name."""
+        """Proportion named of the set by the other form of memory, under its name."""
         return {self.job.other_memory: float(self.felt.other_correct.mean())}
 
     @property

@@ -37,7 +37,7 @@ AT_RECEPTOR = ("change at the receptor", "rate at the receptor")
 
 @dataclass(frozen=True, slots=True)
 class IconScore:
-    """One icon of a ranking: detection, onset, channel and proportion correct are of the people, the rest is nominal.
+    """One icon of a ranking: detection, onset, channel and proportion named are of the people, the rest is nominal.
 
     Attributes
     ----------

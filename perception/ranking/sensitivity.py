@@ -116,7 +116,7 @@ class Effect:
     """Influence of one constant, whose draws have their 95 % interval from `low` to `high` in its `unit`.
 
     `proportion_correct` and `information_bits` are the share (0–1) of the variance of each over draws that would go if
-    the constant were known, `at_low` and `at_high` the proportion correct to be expected at both ends.
+    the constant were known, `at_low` and `at_high` the proportion named to be expected at both ends.
     """
 
     constant: str
@@ -162,7 +162,7 @@ class Sensitivity(Drawn, Tabled):
 
     @property
     def first(self) -> tuple[Reduction, ...]:
-        """Measurements that would take away at least 2 % of the variance of the proportion correct."""
+        """Measurements that would take away at least 2 % of the variance of the proportion named."""
         return tuple(each for each in self.reductions if each.proportion_correct >= NOTEWORTHY)
 
     def rows(self) -> list[dict[str, Any]]:
@@ -173,7 +173,7 @@ class Sensitivity(Drawn, Tabled):
         first = self.first[0].measurement if self.first else "nothing"
         return (
             f"Sensitivity({len(self.effects)} constants on {with_changes(self.rig, self.rig_changes)}, {self.draws} "
-            f"draws, {100 * self.proportion_correct:.1f} % correct; measure first: {first})"
+            f"draws, {100 * self.proportion_correct:.1f} % named; measure first: {first})"
         )
 
 

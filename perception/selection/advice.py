@@ -1,11 +1,12 @@
 """Ways to a goal that a set misses: each is tried with the same people and draws before it is offered.
 
-The cheapest come first: edits of the icons, fewer icons, a larger contact.
+The cheapest come first: edits of the icons (hardly felt ones louder, close ones farther apart), fewer icons, a larger
+contact.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from thermicon.circuit import Rig
@@ -13,14 +14,24 @@ from thermicon.icons import Icon
 from thermicon.icons.model.context import Metadata
 
 from ..criteria import DISTINGUISHABLE_DPRIME
+from ..observer.observer_model import Crowd
+from ..ranking.batches import Job
 from ..ranking.rank import rank
 from ..ranking.ranking import Ranking
-from .choose import Choice, choose
+from .choose import Choice, Chooser
 from .edit import Edit, NoEdit, cheapest_edit
+from .goal import Goal
 from .goal_result import GoalPartResult, GoalResult, judge_goal
+from .louder import louder
 from .request import ChoiceError, Selection
 
 Edits = Mapping[tuple[str, str], Edit | NoEdit]
+ALMOST = 0.1
+"""Icons are made so loud that people miss as many plays as the goal allows, then so small a share of these."""
+FEW, HOPELESS = 24, -0.08
+"""People and draws that judge a way first, and the margin below which it is left at that."""
+CAREFUL = 2
+"""Of so many numbers of icons the next best choices are judged too."""
 FURTHER = 1.3
 """The worst pair is also edited to be so many times farther apart than it is."""
 LARGER = (2.0, 4.0)
@@ -66,11 +77,20 @@ def with_edits(icons: Sequence[Icon], edits: Sequence[Edit]) -> tuple[Icon, ...]
     )
 
 
-def ranked_as(ranking: Ranking, icons: Sequence[Icon], draws: int, rig: Rig | None = None) -> Ranking:
-    """Other icons, or the same on another rig, as the people and draws of a ranking find them."""
-    job = ranking.job
+def ranked_as(job: Job, crowd: Crowd, icons: Sequence[Icon], draws: int, rig: Rig | None = None) -> Ranking:
+    """Other icons, or the same on another rig, as the people and draws of a job find them."""
     where = job.rig if rig is None else rig
-    return rank(tuple(icons), where, crowd=ranking.crowd, trials=job.trials, task=job.task, parameters=draws)
+    return rank(tuple(icons), where, crowd=crowd, trials=job.trials, task=job.task, parameters=draws)
+
+
+def until_met(ways: Iterable[Way]) -> tuple[Way, ...]:
+    """The ways that were tried, one after the other, until one met the goal."""
+    tried: list[Way] = []
+    for way in ways:
+        tried.append(way)
+        if way.result.met:
+            break
+    return tuple(tried)
 
 
 def ways_to(
@@ -81,48 +101,103 @@ def ways_to(
     choice: Choice | None = None,
     must: tuple[str, ...] = (),
 ) -> Iterator[Way]:
-    """Try ways to a goal that the set, or a choice out of it, misses, the cheapest first."""
-    job, goal, playable = ranking.job, missed.goal, all(icon.playable for icon in ranking.icons)
-    wrong = {each.part.quantity for each in missed.parts if not each.met}
-    felt = wrong - {"time", "energy", "count", "safety"}
-    if choice is None and playable and felt and ranking.pairs:
-        for some in _edits(ranking, edits):
-            yield Way(judge_goal(goal, ranked_as(ranking, with_edits(job.icons, some), draws)), edits=some)
-    least = max(2, int(goal.of("count") or 2))
-    most = len(ranking.icons) if choice is None else len(choice.icons)
-    for count in range(most - 1, least - 1, -1) if wrong != {"count"} else ():
-        try:
-            fewer = choose(ranking, Selection(count, goal.objective, must, *goal.totals), goal=goal, parameters=draws)
-        except ChoiceError:
-            continue
-        yield Way(judge_goal(goal, ranking, fewer), choice=fewer, must=must)
+    """Try ways to a goal that the set, or a choice out of it, misses, the cheapest first, if there is hope."""
+    job, goal = ranking.job, missed.goal
+    if choice is None and all(icon.playable for icon in ranking.icons) and _felt(missed):
+        for some in _edits(ranking, missed, edits):
+            if (result := _judged(job, ranking.crowd, with_edits(job.icons, some), goal, draws)) is not None:
+                yield Way(result, edits=some)
+    if _wrong(missed) != {"count"}:
+        yield from _fewer(ranking, goal, draws, len(ranking.icons) if choice is None else len(choice.icons), must)
     names = ranking.labels if choice is None else choice.icons
-    for times in LARGER if felt and playable else ():
+    yield from contacts_to(job, ranking.crowd, [icon for icon in job.icons if icon.name in names], missed, draws)
+
+
+def _fewer(ranking: Ranking, goal: Goal, draws: int, fewer_than: int, must: tuple[str, ...]) -> Iterator[Way]:
+    """The best choices of fewer icons that have any hope, the largest first; then the nearest ones chosen with care."""
+    asked = Selection(max(2, int(goal.of("count") or 2)), goal.objective, must, *goal.totals)
+    chooser = Chooser(ranking.job, ranking.model, asked, goal, ranking.carry_over)
+    try:
+        chooser.feel(ranking.felt)
+    except ChoiceError:
+        return
+    counts = range(min(fewer_than - 1, len(chooser.pool)), asked.count - 1, -1)
+    hopeful = [count for count in counts if not goal.of_sets or chooser.hopes(count) >= HOPELESS]
+    near: list[Way] = []
+    for alone in (True, False):
+        for count in hopeful:
+            if (found := chooser.best(count, draws, lambda: None, alone=alone)) is not None:
+                near.append(Way(judge_goal(goal, ranking, found), choice=found, must=must))
+                yield near[-1]
+        near.sort(key=lambda way: -way.result.margin)
+        hopeful = [len(way.choice.icons) for way in near[:CAREFUL] if way.choice is not None and goal.of_sets]
+
+
+def contacts_to(job: Job, crowd: Crowd, icons: Sequence[Icon], missed: GoalResult, draws: int) -> Iterator[Way]:
+    """Try larger contacts with icons that miss a goal, where what is missed is felt."""
+    for times in LARGER if _felt(missed) else ():
         area = float(f"{1e4 * times * job.rig.contact.area_m2:.3g}")
         try:
             larger = job.rig.with_(**{"contact.area_cm2": area})
         except ValueError:
             return
-        found = ranked_as(ranking, [icon for icon in job.icons if icon.name in names], draws, larger)
-        if all(icon.playable for icon in found.icons):
-            yield Way(judge_goal(goal, found), area_cm2=area)
+        if (result := _judged(job, crowd, icons, missed.goal, draws, larger)) is not None:
+            yield Way(result, area_cm2=area)
 
 
-def _edits(ranking: Ranking, edits: Edits) -> Iterator[tuple[Edit, ...]]:
-    """Sets of edits, the smallest first: of the worst pair, of all close pairs, of the worst pair to be far apart."""
+def _judged(
+    job: Job, crowd: Crowd, icons: Sequence[Icon], goal: Goal, draws: int, rig: Rig | None = None
+) -> GoalResult | None:
+    """How icons meet a goal; None where they cannot be played, or a few people and draws find them far from it."""
+    few = ranked_as(job, crowd.but(people=min(crowd.people, FEW)), icons, min(draws, FEW), rig)
+    if not all(icon.playable for icon in few.icons) or judge_goal(goal, few).margin < HOPELESS:
+        return None
+    return judge_goal(goal, ranked_as(job, crowd, icons, draws, rig))
+
+
+def _wrong(missed: GoalResult) -> set[str]:
+    """What is missed."""
+    return {each.part.quantity for each in missed.parts if not each.met}
+
+
+def _felt(missed: GoalResult) -> bool:
+    """Whether anything is missed that depends on what is felt."""
+    return bool(_wrong(missed) - {"time", "energy", "count", "safety"})
+
+
+def _edits(ranking: Ranking, missed: GoalResult, edits: Edits) -> Iterator[tuple[Edit, ...]]:
+    """Different sets of edits, as they are found: hardly felt icons louder, then close pairs farther apart too."""
     seen: list[tuple[Edit, ...]] = [()]
+    loud: tuple[Edit, ...] = ()
+    for loud in _louder(ranking, missed):
+        if loud not in seen:
+            seen.append(loud)
+            yield loud
+    for some in _searched(ranking, edits) if ranking.pairs else ():
+        if (both := compatible([*loud, *some])) not in seen:
+            seen.append(both)
+            yield both
+
+
+def _louder(ranking: Ranking, missed: GoalResult) -> Iterator[tuple[Edit, ...]]:
+    """Every icon that too few people feel for the goal made louder, just enough and for nearly everybody."""
+    limits = [
+        each.part.limit
+        for each in missed.parts
+        if not each.met and each.part.quantity in ("felt_and_named", "detected")
+    ]
+    wanted = max(limits, default=0.0)
+    faint = [name for name, share in zip(ranking.labels, ranking.felt.detected, strict=True) if share < wanted]
+    for share in (wanted, 1.0 - ALMOST * (1.0 - wanted)) if faint else ():
+        yield compatible([edit for name in faint if (edit := louder(ranking, name, share))])
+
+
+def _searched(ranking: Ranking, edits: Edits) -> Iterator[list[Edit | NoEdit]]:
+    """Edits, the fewest first: of the worst pair, of all close pairs, of the worst pair to be far apart."""
     a, b = ranking.worst_pair or ("", "")
-    if (some := compatible([edits[pair] for pair in ((a, b),) if pair in edits])) not in seen:
-        seen.append(some)
-        yield some
+    yield [edits[a, b]] if (a, b) in edits else []
     near = sorted(ranking.pairs, key=lambda pair: -pair.confused_probability)[:MOST_PAIRS]
     close = {(p.a, p.b): edits.get((p.a, p.b)) for p in near if p.d_prime < DISTINGUISHABLE_DPRIME}
-    every = compatible([edit or cheapest_edit(ranking, *pair) for pair, edit in close.items()])
-    if every not in seen:
-        seen.append(every)
-        yield every
+    yield [edit or cheapest_edit(ranking, *pair) for pair, edit in close.items()]
     apart = next(pair.d_prime for pair in ranking.pairs if (pair.a, pair.b) == (a, b))
-    if (
-        some := compatible([cheapest_edit(ranking, a, b, wanted=FURTHER * max(apart, DISTINGUISHABLE_DPRIME))])
-    ) not in seen:
-        yield some
+    yield [cheapest_edit(ranking, a, b, wanted=FURTHER * max(apart, DISTINGUISHABLE_DPRIME))]

@@ -15,7 +15,7 @@ from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import Icon
 from thermicon.icons.files.shipped import Icons, icons_of
 
-from ..identification.measures import information_bits, proportion_correct
+from ..identification.measures import felt_and_named, information_bits, proportion_correct
 from ..identification.population import RATE_HZ, PopulationResponse, ReceptorTemperatures, identify, respond, run_end_s
 from ..identification.task import USUAL, Task
 from ..observer.observer import Observer
@@ -30,7 +30,7 @@ REACHED_BY = 0.95
 
 @dataclass(frozen=True, slots=True)
 class Appraisal:
-    """One set at its own range: the worst pair by median d′, proportion correct, bits, and bits per second.
+    """One set at its own range: the worst pair by median d′, proportion named, bits, and bits per second.
 
     `reached` is what 95 % of people feel and name, `reached_named` what they name; `each_felt_and_named` (icons,) is
     that of single icons, `detected` (icons,) how often they are reported, and `confused` (icons, icons) how often they
@@ -91,7 +91,7 @@ def appraise(
     felt, durations = population_response(icons, rig, people, crowd.tracking, detection=True, observer=nominal)
     d_prime, named = identify(felt, crowd.memory, people, nominal, crowd.seed, task=task)
     each, bits = proportion_correct(named.probability), float(information_bits(named.probability).mean())
-    alert, pooled = felt.detected.probability * np.diagonal(named.probability, axis1=1, axis2=2), named.pooled
+    alert, pooled = felt_and_named(felt.detected.probability, named.probability), named.pooled
     middle = np.median(d_prime, axis=0)
     a, b = nearest_two(middle)
     return Appraisal(

@@ -171,8 +171,10 @@ def offers(of: Screening, target: float, largest: float, rejected: Rejections) -
         for up in (True, False)
     ]
     logs = np.log(largest) * np.linspace(0.0, 1.0, GRID + 1)[1:] ** 2
-    tried = [one for w, way in enumerate(ways) for g, log in enumerate(logs) for one in _changed(of, way, w, g, log)]
-    good = _good(of, [*tried, *(one for place in free for one in _repeats(of, place))], target, rejected)
+    tried = [
+        one for w, way in enumerate(ways) for g, log in enumerate(logs) for one in changed(of.kept, way, w, g, log)
+    ]
+    good = _good(of, [*tried, *(one for place in free for one in _repeats(of.kept, place))], target, rejected)
     found = [one for one in good if one.way is None]
     first: dict[int, int] = {}
     for one in good:
@@ -184,10 +186,10 @@ def offers(of: Screening, target: float, largest: float, rejected: Rejections) -
     spans = {w: (low, high) for w, (low, high) in spans.items() if low <= most}
     for _ in range(ROUNDS):
         middle = {w: 0.5 * (low + high) for w, (low, high) in spans.items()}
-        trial = [one for w, log in middle.items() for one in _changed(of, ways[w], w, 0, log)]
+        trial = [one for w, log in middle.items() for one in changed(of.kept, ways[w], w, 0, log)]
         done = {one.way for one in _good(of, trial, target, rejected)}
         spans = {w: (low, middle[w]) if w in done else (middle[w], high) for w, (low, high) in spans.items()}
-    last = [one for w, (_, high) in spans.items() for d in (2, 3) for one in _changed(of, ways[w], w, d, high, d)]
+    last = [one for w, (_, high) in spans.items() for d in (2, 3) for one in changed(of.kept, ways[w], w, d, high, d)]
     # Of each number the edit with the fewest digits; those come first.
     shortest: dict[int | None, CandidateEdit] = {}
     for one in _good(of, last, target, rejected):
@@ -196,40 +198,40 @@ def offers(of: Screening, target: float, largest: float, rejected: Rejections) -
     return sorted(best.values(), key=lambda one: (one.cost, one.place, one.new))
 
 
-def _changed(of: Screening, way: Way, w: int, step: int, log: float, digits: int = 4) -> list[CandidateEdit]:
+def changed(kept: Pool, way: Way, w: int, step: int, log: float, digits: int = 4) -> list[CandidateEdit]:
     """The icon with one number changed by a log ratio; nothing where the language or the whole icon forbids it."""
     place, number, up = way
     value = number.times(math.exp(log if up else -log))
     value = _outwards(value, number, digits) if number.field != "count" else value
     if value == number.value or (number.field == "count" and value < 1):
         return []
-    icon = of.kept.icons[place]
+    icon = kept.icons[place]
 
     def made() -> tuple[Icon, str, str]:
         new = with_number(icon, number, value)
         return new, line_of(icon, number.path), line_of(new, number.path)
 
     ratio = abs(math.log((value - number.above) / (number.value - number.above)))
-    return _valid(of, place, made, ratio, w, step)
+    return _valid(kept, place, made, ratio, w, step)
 
 
-def _repeats(of: Screening, place: int) -> list[CandidateEdit]:
-    icon = of.kept.icons[place]
+def _repeats(kept: Pool, place: int) -> list[CandidateEdit]:
+    icon = kept.icons[place]
     once = "its one statement" if len(icon.statements) == 1 else f"its {len(icon.statements)} statements"
 
     def made(count: int) -> tuple[Icon, str, str]:
         return repeated(icon, count), once, f"repeat {count} {{ {once} }}"
 
-    return [one for n in REPEATS for one in _valid(of, place, partial(made, n), math.log(n), None, n)]
+    return [one for n in REPEATS for one in _valid(kept, place, partial(made, n), math.log(n), None, n)]
 
 
 def _valid(
-    of: Screening, place: int, make: Callable[[], tuple[Icon, str, str]], ratio: float, way: int | None, step: int
+    kept: Pool, place: int, make: Callable[[], tuple[Icon, str, str]], ratio: float, way: int | None, step: int
 ) -> list[CandidateEdit]:
     """The edit of an icon into another, with its line before and after, unless that cannot be run or lasts too long."""
     try:
         new, old, line = make()
-        added = duration_s(new, of.kept.rig) - float(of.kept.durations_s[place])
+        added = duration_s(new, kept.rig) - float(kept.durations_s[place])
     except (CueErrors, ValueError):
         return []
     if added > MOST_LONGER_S:

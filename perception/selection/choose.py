@@ -105,7 +105,7 @@ class Choice:
         }
 
     def __repr__(self) -> str:
-        how = "proven best" if self.optimal else f"none exceeds {self.bound:.3g}"
+        how = f"proven best for {self.people} people" if self.optimal else f"none exceeds {self.bound:.3g}"
         return f"Choice({', '.join(self.icons)}: {self.objective} {self.value:.3g}, {how})"
 
 
@@ -199,22 +199,31 @@ class Chooser:
             )
             self.namings = replace(namings, middle=self.middle[np.ix_(self.places, self.places)], parts=parts)
 
-    def best(self, count: int, draws: int, step: Callable[[], None], restarts: int = RESTARTS) -> Choice | None:
+    def hopes(self, count: int) -> float:
+        """The margin of the goal in the best choice of so many, by the mean of a few people at nominal constants."""
+        picked = self._picked(count, RESTARTS)
+        assert self.namings is not None
+        return -math.inf if picked is None else self.namings.margin(picked.chosen)
+
+    def _picked(self, count: int, restarts: int) -> SubsetChoice | None:
+        middle, asked = self.middle[np.ix_(self.places, self.places)], self.asked
+        return pick(middle, self.namings, count, asked.objective, self.must, self.limits, self.job.seed, restarts)
+
+    def best(
+        self, count: int, draws: int, step: Callable[[], None], restarts: int = RESTARTS, alone: bool = False
+    ) -> Choice | None:
         """The best choice of so many, judged as a set of its own by people and draws; None where none keeps the totals.
 
-        Where it misses the goal, the next best are judged too, unless there is one restart only. `step` is called once,
-        and after each draw.
+        Where it misses the goal, the next best are judged too, unless it is wanted `alone`. `step` is called once, and
+        after each draw.
         """
         from .goal_result import SetOutcome, judge_goal  # which judges choices
 
-        middle = self.middle[np.ix_(self.places, self.places)]
-        picked = pick(
-            middle, self.namings, count, self.asked.objective, self.must, self.limits, self.job.seed, restarts
-        )
+        picked = self._picked(count, restarts)
         if picked is None:
             return None
         first = self._judged(picked, picked.chosen, draws, step)
-        if self.goal is None or not self.goal.of_sets or restarts == 1:
+        if self.goal is None or not self.goal.of_sets or alone:
             return first
         outcome = SetOutcome.of_pool(self.whole, self.felt)
         best, margin = first, judge_goal(self.goal, outcome, first).margin

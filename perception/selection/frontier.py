@@ -60,12 +60,21 @@ class Frontier(Drawn, Tabled):
     cautioned: tuple[str, ...]
     rough: bool = False
 
+    @property
+    def crowd(self) -> Crowd:
+        """The people who feel and remember the icons."""
+        job = self.job
+        return Crowd(job.people, job.seed, job.tracking, job.memory, self.model)
+
     @cached_property
     def ranking(self) -> Ranking:
         """The whole pool, ranked when it is first asked for: naming all icons takes longer than all choices."""
-        job = self.job
-        crowd = Crowd(job.people, job.seed, job.tracking, job.memory, self.model)
-        return rank(self.icons, job.rig, crowd=crowd, parameters=0)
+        return rank(self.icons, self.job.rig, crowd=self.crowd, parameters=0)
+
+    @property
+    def nearest(self) -> tuple[Choice, GoalResult]:
+        """The choice that comes nearest to the goal, and how it meets it; ValueError without a goal."""
+        return max(zip(self.points, self.goals, strict=True), key=lambda each: each[1].margin)
 
     def amber(self, point: Choice) -> tuple[str, ...]:
         """Names of the icons of a choice that pass a soft limit of safety."""
@@ -184,7 +193,11 @@ def frontier(
         chooser.feel(felt)
         points: list[Choice] = []
         for count in sizes:
-            choice = chooser.best(count, draws, step, restarts) if count <= len(chooser.pool) else None
+            choice = (
+                chooser.best(count, draws, step, restarts, restarts == ROUGH_RESTARTS)
+                if count <= len(chooser.pool)
+                else None
+            )
             if choice is None:  # nor will more keep the limits
                 break
             points.append(choice)

@@ -254,7 +254,7 @@ def other_word(goal: str) -> str | None:
 
 def _part(number: int, text: str, tree: Any) -> GoalPart:
     where = f"goal, part {number} {text[tree.meta.start_pos : tree.meta.end_pos]!r}"
-    name = _name(tree.children[2 if tree.data == "stated" else 0])
+    name = quantity_of(str(tree.children[2 if tree.data == "stated" else 0]))
     if name == SAFETY:
         wanted = str(tree.children[1]) if tree.data == "verdict" else ""
         if wanted not in VERDICTS:
@@ -297,10 +297,14 @@ def _part(number: int, text: str, tree: Any) -> GoalPart:
     return GoalPart(name, limit, people)
 
 
-def _name(word: Any) -> str:
-    """The quantity that a word names."""
-    name = str(word).replace("-", "_").replace("d'", "d_prime").replace("d′", "d_prime")
-    return "named" if name == CORRECT else name
+def quantity_of(word: str) -> str:
+    """The quantity that a word names, here or in `sweep`.
+
+    >>> quantity_of("felt-and-named"), quantity_of("d′"), quantity_of("correct_95")
+    ('felt_and_named', 'd_prime', 'named_95')
+    """
+    name = word.replace("-", "_").replace("d'", "d_prime").replace("d′", "d_prime")
+    return re.sub(rf"^{CORRECT}(?![a-z])", "named", name)
 
 
 def _pieces(tree: Any) -> tuple[str | None, float, str, float | None]:
@@ -309,7 +313,7 @@ def _pieces(tree: Any) -> tuple[str | None, float, str, float | None]:
         return None, _number(tree.children[1]), "", None
     if tree.data == "stated":  # 90 % correct for 95 % of people
         number, unit, name, people = tree.children
-        comparison = QUANTITIES[_name(name)].comparison
+        comparison = QUANTITIES[quantity_of(str(name))].comparison
     else:
         name, comparison, number, unit, people = tree.children
     signs = {"≥": ">=", ">": ">=", "≤": "<=", "<": "<=", "=": ">=" if name == "count" else "="}

@@ -29,9 +29,9 @@ TOLERANCE = 1e-9
 class SetOutcome:
     """The scores by which goals are judged: of a set, its icons, and its people.
 
-    `names` of all icons; `felt_and_named` (of single icons too: `alert`), `named` and `bits` are means over people,
-    `d_prime` that of the nearest pair; `detected`,
-    `onset_s` (NaN: not felt), `durations_s` and `energies_J` (NaN on a thermode, which states none) of every icon.
+    `names` of all icons; `felt_and_named`, `named` and `bits` are means over people, `d_prime` that of the nearest
+    pair; `each_felt_and_named`, `detected`, `onset_s` (NaN: not felt), `durations_s` and `energies_J` (NaN on a
+    thermode, which states none) of every icon.
     `worst_pair` is confused most, `nearest_pair` has the smallest d′ (None: one icon). `amber` and `red` pass a soft
     and a hard limit of safety; `unreached` icons are no matter of safety, which judges what the rig plays of them.
     `persons` has values of `felt_and_named`, `named`, `detected` (of the icon detected least) and `bits` for single
@@ -43,7 +43,7 @@ class SetOutcome:
     named: float
     bits: float
     d_prime: float
-    alert: Array
+    each_felt_and_named: Array
     detected: Array
     onset_s: Array
     durations_s: Array
@@ -67,7 +67,7 @@ class SetOutcome:
             named=ranking.proportion_correct,
             bits=ranking.information_bits,
             d_prime=math.nan if nearest is None else nearest.d_prime,
-            alert=np.array([icon.felt_and_named for icon in icons]),
+            each_felt_and_named=np.array([icon.felt_and_named for icon in icons]),
             detected=felt.detected,
             onset_s=felt.detection.onset_s,
             durations_s=np.array([icon.duration_s for icon in icons]),
@@ -97,7 +97,7 @@ class SetOutcome:
             named=own.proportion_correct,
             bits=own.information_bits,
             d_prime=own.d_prime,
-            alert=own.each_felt_and_named,
+            each_felt_and_named=own.each_felt_and_named,
             detected=self.detected[places],
             onset_s=self.onset_s[places],
             durations_s=self.durations_s[places],
@@ -246,9 +246,11 @@ def _binding(part: GoalPart, outcome: SetOutcome) -> str:
         lost = [name for name in outcome.names if name in outcome.red or name in outcome.unreached]
         return f"{listed(lost)} cannot be played" if lost else "the set has fewer icons"
     if part.quantity == "felt_and_named":
-        worst = int(outcome.alert.argmin())
+        worst = int(outcome.each_felt_and_named.argmin())
         share = outcome.detected[worst]
-        if 1.0 - share > 1.0 - outcome.alert[worst] / max(share, 1e-9):  # more plays are not felt than misnamed
+        if 1.0 - share > 1.0 - outcome.each_felt_and_named[worst] / max(
+            share, 1e-9
+        ):  # more plays are not felt than misnamed
             return f"{outcome.names[worst]} is felt in {100.0 * share:.0f} % of plays"
     if part.quantity in ("felt_and_named", "named", "bits", "d_prime"):
         apart = part.quantity == "d_prime"

@@ -143,7 +143,8 @@ class Pool:
             if found[place] is not None:
                 continue
             if share < least:
-                found[place] = f"is detected in {100.0 * share:.0f} % of trials only"
+                digits = 0 if round(share, 2) < least else 1  # 98.7 % is not the 99 % that was asked for
+                found[place] = f"is detected in {100.0 * share:.{digits}f} % of trials only"
             elif onset is not None and not felt_s <= onset:
                 found[place] = "is not felt" if math.isnan(felt_s) else f"is felt at {felt_s:.2f} s only"
         return tuple(found)

@@ -12,6 +12,7 @@ from thermicon.circuit import Rig
 from thermicon.icons import Icon, IconSet
 from thermicon.icons.model.icon import played_icons
 
+from ..criteria import FELT_FROM
 from ..identification.population import ReceptorTemperatures, memory_dprime, respond
 from ..identification.task import USUAL
 from ..observer.observer import MemoryForm, Observer
@@ -108,10 +109,24 @@ class SearchRun:
 
     def start(self, judge: Evaluator, rng: np.random.Generator) -> list[Candidate]:
         """The best of the members that the families count out, or of a sample of them."""
+        self._check_fixed(judge)
         pool = [*self.fixed, *sample_candidates(self.families, SAMPLED, rng)]
         if (found := self.best(pool, judge)) is None:
             raise ChoiceError(self._nothing(judge, pool))
         return found
+
+    def _check_fixed(self, judge: Evaluator) -> None:
+        """Refuse icons that no search changes where fewer than half of plays, or than the goal asks, are reported."""
+        asked = None if judge.goal is None else judge.goal.least_detected
+        least = FELT_FROM if asked is None else asked
+        shares = judge.felt(self.fixed)[2].mean(axis=0).tolist() if self.fixed else []
+        for each, share in zip(self.fixed, shares, strict=True):
+            if share < least:
+                raise ChoiceError(
+                    f"{each.icon.name} is no family, so that it stays in every set, but is detected in "
+                    f"{100.0 * share:.0f} % of trials only: leave it out of the file, make it a family, or ask for "
+                    "detected >= a smaller share in the goal"
+                )
 
     def improve(
         self,

@@ -199,9 +199,16 @@ class SubsetIdentification:
         own = self.values(chosen, place, others, objective)
         if not self.parts:
             return own
-        apart = [part.margin(self.values(chosen, place, others, _meant(part.quantity))) for part in self.parts]
         nearest = self.values(chosen, place, others, "worst")
-        return np.asarray(np.min(apart, axis=0) + TIE * own + TIE**2 * nearest)
+        return np.asarray(self._margins(chosen, place, others) + TIE * own + TIE**2 * nearest)
+
+    def margin(self, chosen: Sequence[int]) -> float:
+        """The least margin of the chosen over the parts of the goal."""
+        return float(self._margins(chosen, len(chosen) - 1, chosen[-1:])[0])
+
+    def _margins(self, chosen: Sequence[int], place: int, others: Sequence[int]) -> Array:
+        apart = [part.margin(self.values(chosen, place, others, _meant(part.quantity))) for part in self.parts]
+        return np.asarray(np.min(apart, axis=0))
 
     def values(self, chosen: Sequence[int], place: int, others: Sequence[int], objective: str) -> Array:
         """The same of an objective alone, or of `detected`, how often the icon detected least is reported."""

@@ -63,6 +63,7 @@ def design(**changes: Any) -> dict[str, Any]:
     return {
         **{"type": "frame", "view": "design", "seq": 0, "text": TEXT, "ms": 2.0},
         **{"icons": ["dip", "rise"], "icon": "dip", "can_undo": True},
+        "of": changes.get("text") or TEXT,
         "badge": {"colour": "green", "text": "no limit is passed", "more": ["28 °C at 2 s"]},
         "time": {"t0": 0.0, "dt": 0.01, "n": ROWS + 1},
         "panels": [panel],
@@ -103,8 +104,9 @@ class Bench:
         return [message for message in messages if not kinds or message["type"] in kinds]
 
     def answer(self, **changes: Any) -> None:
-        """A frame that answers the newest message."""
-        self.frame(design(**{"text": None, "seq": self.sent()[-1]["seq"]} | changes))
+        """A frame that answers the newest message, and is of the newest text that was sent."""
+        of = changes.get("text") or [TEXT, *(message["text"] for message in self.sent("text"))][-1]
+        self.frame(design(**{"text": None, "of": of, "seq": self.sent()[-1]["seq"]} | changes))
 
     def said(self, text: str) -> None:
         """Wait until screen readers are told so."""

@@ -1,6 +1,7 @@
 """The design view of the canvas module in a static page with frames like the kernel's."""
 
 import pytest
+from playwright.sync_api import expect
 
 from tests.browser.staticpage import INKED, TEXT, TROUBLE, Bench, design
 
@@ -65,7 +66,7 @@ def test_an_error_is_marked_and_named_with_its_cure(drawn: Bench) -> None:
     assert wrong.inner_text() == "4"
     assert page.locator(".tm-go").inner_text() == "1 error, line 5"
     assert page.locator(".tm-first").inner_text() == "E102 missing unit: this number has no unit"
-    assert page.locator(".tm-older-tag").is_visible()
+    expect(page.locator(".tm-older-tag")).to_be_visible()
     assert page.locator(".cm-content").get_attribute("aria-invalid") == "true"
     wrong.hover()
     assert page.locator(".cm-diagnostic .tm-hint").inner_text() == 'a time is written as "4 s"'

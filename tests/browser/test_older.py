@@ -6,8 +6,8 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.jupyter import PANEL
-from tests.browser.onbench import TWO, open_tab, root, type_text
-from tests.browser.staticpage import TROUBLE, Bench, design
+from tests.browser.onbench import TWO, expect_text, open_tab, root, type_text
+from tests.browser.staticpage import TEXT, TROUBLE, Bench, design
 
 SAFE = f"# goal: correct >= 10 %\n{TWO}"
 UNSAFE = SAFE.replace("warm by 4 °C at 2 °C/s", "warm by 25 °C at 30 °C/s", 1)
@@ -21,6 +21,16 @@ WATCH = """() => {
     if (document.querySelector(".tm-editor").editor.text.includes("25 °C"))
       for (const one of document.querySelectorAll(words))
         if (one.checkVisibility({ visibilityProperty: true })) seen.add(one.innerText);
+    requestAnimationFrame(look);
+  };
+  look();
+}"""
+# Words of the badge one after another from now on.
+WORDS = """() => {
+  const seen = window.words = [];
+  const look = () => {
+    const word = document.querySelector(".tm-pill").textContent;
+    if (seen.at(-1) !== word) seen.push(word);
     requestAnimationFrame(look);
   };
   look();
@@ -78,6 +88,35 @@ def test_unsafe_text_that_nobody_judged_never_stands_beside_a_word_on_safety(ben
     assert state in ("computing", "busy") or seen == {"? not judged"}, seen
 
 
+def test_a_knob_and_a_rig_that_a_busy_kernel_does_not_know_are_not_judged(bench: Page) -> None:
+    page, late = bench, root(bench).get_by_role("alert")
+    type_text(page, TWO)
+    page.locator(".tm-goal").fill("correct >= 10 %")
+    page.locator(".tm-goal").press("Enter")
+    expect_text(page, SAFE)
+    expect(page.locator(".tm-pill")).to_have_text("✓ limits kept")
+    page.evaluate(DONE_TO_THE_KERNEL["busy"])
+    page.wait_for_timeout(500)
+    slider = page.locator(".thermicon-knob").filter(has_text="contact area").locator(".noUi-handle")
+    slider.press("ArrowUp")
+    is_older(page, "computing …")
+    page.evaluate(WORDS)
+    slider.press("ArrowUp")
+    expect(late).to_contain_text("No answer from the kernel")
+    is_older(page, "no answer")
+    slider.press("ArrowUp")  # ipywidgets holds it back until the first one is answered
+    expect(page.locator(".tm-pill")).to_have_text("✓ limits kept", timeout=30_000)
+    expect(page.locator(".thermicon-knob .changed")).to_have_count(1)
+    page.wait_for_timeout(1_000)
+    assert page.evaluate("words") == ["? not judged", "✓ limits kept"], "one of an earlier place comes between"
+    page.evaluate(DONE_TO_THE_KERNEL["cut"])
+    open_tab(page, "Export")
+    rig = page.locator(".thermicon-bar select")
+    rig.select_option(index=1 if rig.evaluate("e => e.selectedIndex") != 1 else 0)
+    expect(page.locator(".thermicon-top").last).to_be_attached()
+    expect(page.locator(".thermicon")).to_have_attribute("data-older", "")
+
+
 def answered(bench: Bench, **changes: Any) -> None:
     bench.answer(**changes)
     expect(bench.page.locator(".tm-root").first).not_to_have_attribute("data-older", "")
@@ -127,6 +166,44 @@ def test_what_is_older_is_told_where_it_lasts_and_the_details_of_the_badge_go(dr
     drawn.frame(design(stale=True, troubles=[TROUBLE], badge={"colour": "grey", "text": "not judged: x", "more": []}))
     drawn.append("#")
     assert page.locator(".tm-badge-text").inner_text() == "x", "an error stays the reason while its cure is typed"
+
+
+def test_a_frame_is_of_the_text_that_it_names_whatever_it_answers(drawn: Bench) -> None:
+    page = drawn.page
+    pill, cause, status = (page.locator(f".tm-{name}") for name in ("pill", "badge-text", "status"))
+    drawn.frame({**STRIP, "stale": False, "rough": False, "met": True, "binding": ""})
+    drawn.append("#")
+    expect(status).to_be_hidden()
+    later = drawn.sent()[-1]["seq"] + 1_000
+    drawn.frame(design(text=None, of=TEXT, seq=later))  # as a frame that answers another view of the model
+    is_older(page, "of another text")
+    drawn.frame(design(text=None, of=f"{TEXT}#", seq=later))
+    assert (pill.inner_text(), status.inner_text()) == ("✓ limits kept", "no errors")
+    drawn.frame(design(text=None, of=f"{TEXT}# typed in another page"))
+    assert (pill.inner_text(), cause.inner_text()) == ("? not judged", "of another text")
+    drawn.frame(design(text=TEXT.replace("\n", "\r\n")))
+    assert pill.inner_text() == "✓ limits kept", "lines may end as they like"
+
+
+def test_a_touched_knob_is_not_judged_until_the_kernel_has_all_that_was_held_back(drawn: Bench) -> None:
+    page = drawn.page
+    knobs = "<input class=thermicon-knobs>"
+    page.evaluate(f"document.body.className = 'thermicon'; document.querySelector('#app').outerHTML = '{knobs}'")
+    drawn.show()
+    drawn.frame(design())
+    drawn.frame({**STRIP, "stale": False, "rough": False, "met": True, "binding": ""})
+    pills, knob = page.locator(".tm-pill"), page.locator(".thermicon-knobs")
+    knob.press("ArrowUp")
+    expect(pills).to_have_text(["? not judged"] * 2)
+    drawn.answer()
+    expect(pills).to_have_text(["✓ limits kept"] * 2)
+    knob.press("ArrowUp")
+    is_older(page, "no answer")
+    for answer in (lambda: drawn.frame(design(text=None)), drawn.answer):
+        answer()
+        expect(pills).to_have_text(["? not judged"] * 2)
+    drawn.answer()
+    expect(pills).to_have_text(["✓ limits kept"] * 2)
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

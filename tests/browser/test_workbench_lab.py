@@ -65,6 +65,13 @@ def test_text_and_curve_stay_in_step(bench: Page) -> None:
     bench.locator(".tm-button", has_text="Undo").click()
     expect(trouble).to_have_count(0)
     expect_text(bench, dragged)
+    bench.locator(".tm-goal").fill("named >= 10 %")
+    bench.locator(".tm-goal").press("Enter")
+    expect_text(bench, f"# goal: named >= 10 %\n{dragged}")
+    expect(bench.locator(".tm-met")).to_have_text("✓ met", timeout=SETTLES_MS)
+    ends = "pill => [pill, pill.parentElement].map((each) => each.getBoundingClientRect().right)"
+    pill, badge = bench.locator(".tm-pill").first.evaluate(ends)
+    assert pill <= badge, "the strip leaves no room for the verdict"
 
 
 def test_it_designs_below_the_first_screen_compares_and_exports(bench: Page, lab: Server) -> None:

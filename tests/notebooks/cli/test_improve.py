@@ -1,6 +1,8 @@
 """``thermicon improve``: JSON for scripts, text for people, results."""
 
 import json
+import re
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,6 +12,7 @@ import pytest
 
 from tests.builders import steps
 from tests.notebooks.conftest import Cli
+from thermicon.base.words.number_text import percent
 from thermicon.icons import parse
 from thermicon.perception.ranking import batches
 from thermicon.perception.selection.choose import Chooser
@@ -160,6 +163,46 @@ def test_a_choice_of_a_large_space_meets_what_icons_of_it_meet(cli: Cli, tmp_pat
     said = cli.good("improve", "search-space", "--up-to", 4, *few, *goal, "-o", out)
     assert "Goal: met by the best 4" in said.stdout
     assert "Goal: met" in cli.good("rank", out, *few, *goal).stdout
+
+
+HEAD = "cue 1; set weak { site thenar; control display; baseline 32 °C }; "
+WAYS = {
+    "a faint icon is made louder": (
+        "icon faint { cool by 0.1 °C at 1 °C/s; return at 3 °C/s }; "
+        "icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }",
+        ("rank", "85 % felt-and-named"), "in faint, cool by 0.1 °C at 1 °C/s → cool by",
+    ),
+    "the nearest choice has a larger contact": (
+        "icon a { cool by 2.2 °C at 1 °C/s; return at 3 °C/s }; icon b { warm by 4 °C at 2 °C/s; return at 3 °C/s }",
+        ("improve", "85 % felt-and-named", "--up-to", "2", "--set", "contact.area_cm2=2"), "a contact of 8 cm²",
+    ),
+    "the set that was found has a larger contact": (
+        "icon dip(k in 0.5..1 step 0.1 °C) { cool by k at 1 °C/s; hold for 2 s; return at 3 °C/s }; "
+        "icon rise(k in 1..1.4 step 0.1 °C) { warm by k at 2 °C/s; hold for 2 s; return at 3 °C/s }",
+        ("improve", "70 % felt-and-named, detected >= 20 %", "--evaluations", "40", "--set", "contact.area_cm2=2"),
+        "a contact of 8 cm²",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WAYS)
+def test_a_way_that_was_tried_comes_true_where_next_is_followed(
+    cli: Cli, case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    icons, (command, goal, *options), way = WAYS[case]
+    monkeypatch.chdir(tmp_path)
+    Path("weak.cue").write_text(HEAD + icons, encoding="utf-8")
+    few = ("--people", 12, "--intervals", 8)
+    said = " ".join(cli.good(command, "weak.cue", *options, *few, "--goal", goal).stdout.split())
+    tried = re.findall(rf"Tried: {re.escape(way)}.*?: felt-and-named ([\d.]+) % → ([\d.]+) %, which meets", said)
+    assert len(tried) == 1, said
+    before, after = tried[0]
+    assert f"felt-and-named >= {goal[:2]} %: {before} %, missed" in said
+    following = re.findall(r"Next: .*?thermicon (.+?%')(?: -o (\w+.cue))?", said)[0]
+    if "add -o best.cue, then" in said:
+        cli.good(command, "weak.cue", *options, *few, "--goal", goal, "-o", "best.cue")
+    then = cli.good(*shlex.split(" ".join([following[0], *(["-o", following[1]] * bool(following[1]))]))).stdout
+    assert "Goal: met" in then or f"{percent(float(before) / 100)} → {percent(float(after) / 100)}" in then, then
 
 
 def test_a_row_for_each_number_of_icons(cli: Cli, tmp_path: Path) -> None:

@@ -100,7 +100,7 @@ def test_eight_of_eight_silences_on_one_icon_are_seen(cli: Cli, two: Path, tmp_p
     told(
         cli("pilot", two, sealed, "--answers", path),
         "Felt and named: 67 % of 24 plays; it says ",
-        "Its icons are not what it says: p = under 0.01",
+        "Its icons are not what it says: p under 0.01",
     )
     held = json.loads(sealed.read_text(encoding="utf-8"))
     held["icons"] = [{key: icon[key] for key in icon if key != "felt_and_named"} for icon in held["icons"]]

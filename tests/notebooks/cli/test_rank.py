@@ -14,6 +14,7 @@ from thermicon.base.words.number_text import percent_span
 from thermicon.notebooks.cli import ranking
 from thermicon.notebooks.cli.options import CrowdOptions, RigOptions, commands
 from thermicon.notebooks.report.following import after_ranking
+from thermicon.perception import rank
 from thermicon.perception.observer.observer import DATA
 
 Cli = Callable[..., Any]
@@ -68,7 +69,9 @@ def test_what_is_asked_first_stands_in_a_few_lines(process: Cli) -> None:
     assert "\x1b" not in "".join(said)
     assert [line.split()[0] for line in said[2:6]] == [said[2].split()[0], said[3].split()[0], said[4].split()[0], "d′"]
     assert any(line.startswith("Next: thermicon improve wave-confusions --people 4 --intervals 0 ") for line in said)
-    assert any(line.split()[:3] == ["and", "7", "more"] for line in said)
+    more = next(k for k, line in enumerate(said) if line.split()[:3] == ["and", "7", "more"])
+    least = min(rank("wave-confusions", people=4, parameters=0).icons, key=lambda icon: icon.felt_and_named)
+    assert said[more + 1].split()[0] == least.name, "the icon that is in the way stays"
 
 
 def test_rules_of_thumb_score_a_set_without_the_model(cli: Cli) -> None:
@@ -220,7 +223,7 @@ def test_the_table_of_doubt_says_what_to_measure_first(cli: Cli, two: Path, tmp_
     effects = json.loads(out.read_text(encoding="utf-8"))["effects"]
     assert {"constant", "unit", "low", "high", "proportion_correct", "information_bits"} <= set(effects[0])
     words = " ".join(said.stdout.split())
-    assert words.startswith("Two for a test constant 95 % of draws correct bits correct low–high ")
+    assert words.startswith("Two for a test constant 95 % of draws named bits named low–high ")
     assert "What to measure first, with the share of the variance of what is named that it would remove: - " in words
     assert effects[0]["constant"].split()[0] in words
     assert (

@@ -60,7 +60,7 @@ def test_observed_answers_stand_beside_the_predicted_ones(look: Look) -> None:
     found = observed(Trials(names, ("P",), 5.0 * np.eye(6)[None] + 1.0), icons, "thenar", draws=20)
     seen, predicted, correct = observed_figure(found, look).axes
     assert {text.get_text() for text in seen.texts} == {"55", "9.1"}
-    assert len(predicted.texts) == 36 and "before and after" in correct.get_title("left")
+    assert len(predicted.texts) == 36 and "Before and after" in correct.get_title("left")
 
 
 def test_two_maps_below_one_another_name_the_columns_once() -> None:

@@ -91,7 +91,7 @@ def test_of_more_pairs_more_lie_outside_their_95_percent_by_chance(count: int, c
 @pytest.mark.parametrize(
     ("before", "after", "count", "said"),
     [
-        (0.0099, 0.4, 20, "p = under 0.01 before, 0.40 after the answers were used: the prediction missed"),
+        (0.0099, 0.4, 20, "p under 0.01 before, p = 0.40 after the answers were used: the prediction missed"),
         (0.01, 0.4, 20, "p = 0.01 before"),
         (0.0499, 0.4, 20, "the prediction missed, but laboratories that the evidence allows explain the answers"),
         (0.05, 0.0499, 20, "the model cannot explain these answers, not even with other constants"),

@@ -67,7 +67,7 @@ def send(bench: Workbench) -> Send:
 def test_what_is_typed_is_drawn_and_keeps_its_text(bench: Workbench, send: Send) -> None:
     answer = send(type="text", text=DIP.replace("4 °C", "5 °C"))
     assert answer["text"] is None
-    assert not answer["stale"]
+    assert (answer["of"], answer["stale"]) == (bench.text, False)
     assert answer["handles"][0]["y"] == 27.0
     assert bench.icon is not None
     assert bench.trace.skin_C.min() < 28.5
@@ -86,6 +86,26 @@ def test_an_error_is_named_under_its_line_and_the_drawing_stays(bench: Workbench
     mended = send(type="apply", line=5)
     assert mended["text"] == DIP
     assert mended["troubles"] == []
+
+
+@pytest.mark.parametrize("act", ["text", "knob"])
+def test_what_could_not_be_computed_is_not_judged_and_the_frame_names_the_text_that_it_is_of(
+    bench: Workbench, send: Send, monkeypatch: pytest.MonkeyPatch, act: str
+) -> None:
+    def fail(*given: Any) -> None:
+        raise ArithmeticError("of an unknown kind")
+
+    with monkeypatch.context() as broken:
+        broken.setattr("thermicon.notebooks.workbench.design_model.scene", fail)
+        if act == "text":
+            answer = send(type="text", text=DIP.replace("4 °C", "5 °C"))
+        else:
+            bench.design_view.sliders["contact.area_cm2"].value = 1.5
+            answer = bench.design_view.canvas._newest[0]
+    assert "of an unknown kind" in answer["badge"]["text"]
+    assert (answer["of"], answer["badge"]["colour"]) == (DIP, "grey")
+    assert send(type="hello")["badge"]["colour"] == "grey", "until something is computed"
+    assert send(type="text", text=DIP)["badge"]["colour"] == "green"
 
 
 def test_a_drag_is_one_step_and_undo_and_redo_carry_the_text(bench: Workbench, send: Send) -> None:

@@ -140,8 +140,8 @@ def test_an_edit_is_at_most_half_a_minute_longer_and_a_second_costs_a_tenth(
     rig: Rig, added_s: float, costs: list[float]
 ) -> None:
     longer = parse(f"cue 1; icon a {{ hold for {8.0 + added_s} s }}")["a"]
-    of: Any = SimpleNamespace(kept=SimpleNamespace(rig=rig, durations_s=[8.0]))
-    found = candidate_edits._valid(of, 0, lambda: (longer, "old", "new"), 0.7, 0, 0.0)
+    kept: Any = SimpleNamespace(rig=rig, durations_s=[8.0])
+    found = candidate_edits._valid(kept, 0, lambda: (longer, "old", "new"), 0.7, 0, 0.0)
     assert [edit.cost for edit in found] == pytest.approx(costs)
 
 
@@ -164,9 +164,9 @@ def test_a_temperature_counts_from_the_baseline(monkeypatch: pytest.MonkeyPatch)
     icon = parse("cue 1\nset { baseline 32 °C }\nicon to-it { cool to 28 °C at 2 °C/s; return at 2 °C/s }")["to-it"]
     number = next(n for n in numbers_of(icon, 32.0) if n.field == "to_C")
     assert number.times(1.5) == 26.0
-    monkeypatch.setattr(candidate_edits, "_valid", lambda of, place, make, ratio, way, step: [ratio])
-    of: Any = SimpleNamespace(kept=SimpleNamespace(icons=[icon]))
-    (ratio,) = candidate_edits._changed(of, (0, number, True), 0, 0, np.log(1.5))
+    monkeypatch.setattr(candidate_edits, "_valid", lambda kept, place, make, ratio, way, step: [ratio])
+    kept: Any = SimpleNamespace(icons=[icon])
+    (ratio,) = candidate_edits.changed(kept, (0, number, True), 0, 0, np.log(1.5))
     assert ratio == pytest.approx(np.log(1.5))  # what the change costs
 
 

@@ -67,10 +67,14 @@ def test_correct_is_read_as_named_and_the_other_word_is_offered() -> None:
 
 
 def test_a_set_with_a_silent_icon_misses_and_the_reason_is_that_icon() -> None:
-    faint = dataclasses.replace(OUTCOME, alert=np.array([0.95, 0.0099, 0.9]), detected=np.array([0.99, 0.01, 1.0]))
+    faint = dataclasses.replace(
+        OUTCOME, each_felt_and_named=np.array([0.95, 0.0099, 0.9]), detected=np.array([0.99, 0.01, 1.0])
+    )
     result = judge_goal(Goal.parse("felt-and-named >= 90 %"), faint)
     assert (result.met, result.binding) == (False, ("glow is felt in 1 % of plays",))
-    confused = dataclasses.replace(faint, alert=np.array([0.95, 0.9, 0.5]), detected=np.array([0.99, 0.99, 0.99]))
+    confused = dataclasses.replace(
+        faint, each_felt_and_named=np.array([0.95, 0.9, 0.5]), detected=np.array([0.99, 0.99, 0.99])
+    )
     assert judge_goal(Goal.parse("felt-and-named >= 90 %"), confused).binding == ("glow and wave are confused most",)
 
 
@@ -87,7 +91,7 @@ OUTCOME = SetOutcome(
     named=0.9,
     bits=1.4,
     d_prime=2.4,
-    alert=np.array([0.95, 0.9, 0.76]),
+    each_felt_and_named=np.array([0.95, 0.9, 0.76]),
     detected=np.array([0.99, 0.93, 1.0]),
     onset_s=np.array([0.9, 1.6, 1.1]),
     durations_s=np.array([3.0, 4.0, 5.0]),
