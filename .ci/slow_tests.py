@@ -1,8 +1,9 @@
 """The tests whose slow part a change calls for, one path per line.
 
-``.ci/slow_tests.py`` compares with the commit before the change; ``.ci/slow_tests.py FILE ...`` takes a list of changed
-files instead. A changed room calls for its tests, what archives are made of for their build, what a page shows for that
-page. A change that calls for more than `MOST_MINUTES` gets as many of them as fit, the quickest first.
+``.ci/slow_tests.py`` compares with the commit before the change, and takes all files where that is not known;
+``.ci/slow_tests.py FILE ...`` takes a list of changed files instead. A changed room calls for its tests, what archives
+are made of for their build, what a page shows for that page. A change that calls for more than `MOST_MINUTES` gets as
+many of them as fit, the quickest first.
 """
 
 from __future__ import annotations
@@ -84,10 +85,14 @@ def git(*arguments: str) -> str:
 
 
 def base() -> str:
-    """Return the commit before the change: named by THERMICON_BASE, or where the branch began, last tag, or parent."""
+    """Return the commit before the change: named by THERMICON_BASE, else where the branch began, last tag, or parent.
+
+    Nothing where none is known, as after a push that replaced the commit that THERMICON_BASE names.
+    """
+    if given := os.environ.get("THERMICON_BASE"):
+        return git("rev-parse", "--verify", f"{given}^{{commit}}")
     head = git("rev-parse", "HEAD")
     candidates = (
-        git("rev-parse", "--verify", f"{os.environ.get('THERMICON_BASE') or '-'}^{{commit}}"),
         git("merge-base", "HEAD", "origin/HEAD"),
         git("rev-list", "-n1", git("describe", "--tags", "--abbrev=0", "HEAD~1") or "-"),
         git("rev-parse", "--verify", "HEAD~1"),
@@ -97,5 +102,6 @@ def base() -> str:
 
 if __name__ == "__main__":
     since = base()
-    files = sys.argv[1:] or (git("diff", "--name-only", since, "HEAD").splitlines() if since else [])
+    changed = git("diff", "--name-only", since, "HEAD") if since else git("ls-files")
+    files = sys.argv[1:] or changed.splitlines()
     sys.stdout.write("".join(f"{test}\n" for test in selection(files)))

@@ -7,6 +7,7 @@ import hashlib
 import os
 import pickle
 import shutil
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from functools import wraps
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 # Many tests start interpreters of their own: what one has compiled to bytecode, the next need not.
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+# A job in the background ignores interrupts, and so would the programs that tests start and interrupt.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 # As in the program: threads of linear algebra would wait for cores that other processes use.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 

@@ -1,6 +1,7 @@
 """The scripts of ``.ci``, the ordinary browser tests, the paths in CONTRIBUTING."""
 
 import re
+import signal
 import subprocess
 import sys
 import tomllib
@@ -62,6 +63,31 @@ def test_data_of_a_package_call_for_all_its_rooms_each_once() -> None:
     command = [sys.executable, ROOT / ".ci" / "slow_tests.py", "circuit/rigs/thenar.toml", "circuit/delivery/pack.py"]
     printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
     assert [each for each in printed if each.startswith("tests/circuit/delivery")] == ["tests/circuit/delivery"]
+
+
+def test_a_push_whose_parent_is_unknown_asks_all_folders(monkeypatch: pytest.MonkeyPatch) -> None:
+    head = slow_tests.git("rev-parse", "HEAD")
+    for given, known in ((head, head), ("0" * 40, "")):
+        monkeypatch.setenv("THERMICON_BASE", given)
+        assert slow_tests.base() == known
+    printed = subprocess.run(
+        [sys.executable, ROOT / ".ci" / "slow_tests.py"], capture_output=True, text=True, check=True
+    ).stdout.split()
+    assert printed == slow_tests.selection(slow_tests.git("ls-files").splitlines())
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="jobs in the background of a shell")
+def test_tests_do_not_depend_on_how_they_are_started() -> None:
+    interrupted = "test_an_interrupt_ends_with_130_and_no_traceback or test_a_request_to_end_leaves_nothing"
+    where = [ROOT / "tests/notebooks/cli/test_process.py", ROOT / "tests/notebooks/files/test_exportfolder.py"]
+    run = subprocess.run(
+        [sys.executable, "-m", "pytest", "-n0", "-p", "no:cacheprovider", *where, "-k", interrupted],
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN),
+    )
+    assert "3 passed" in run.stdout and run.returncode == 0, run.stdout
 
 
 def test_a_change_of_everything_gets_what_fits_and_that_is_most() -> None:
