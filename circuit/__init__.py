@@ -6,4 +6,14 @@ This is the front door, in the order of the flow; everything else is reached thr
 
 from lazy_loader import attach_stub
 
+from thermicon.base.checks.arguments import register
+
 __getattr__, __dir__, __all__ = attach_stub(__name__, __file__)
+
+register(
+    "thermicon.icons",
+    "thermicon.circuit",
+    Rig='Rig.load("thenar")',
+    Trace="simulate(icon)",
+    Drive="Drive([0, 1], [0, 0.5])",
+)

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 from lazy_loader import attach_stub
 
+from thermicon.base.checks.arguments import register
+
 if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
@@ -26,3 +28,6 @@ def unload_ipython_extension(shell: "InteractiveShell") -> None:
     from .workbench import magic
 
     magic.unregister(shell)
+
+
+register("thermicon.icons", "thermicon.circuit", "thermicon.perception", "thermicon.notebooks")

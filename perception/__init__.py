@@ -6,4 +6,16 @@ The front door holds what a script or a notebook needs; everything else is in th
 
 from lazy_loader import attach_stub
 
+from thermicon.base.checks.arguments import register
+
 __getattr__, __dir__, __all__ = attach_stub(__name__, __file__)
+
+register(
+    "thermicon.icons",
+    "thermicon.circuit",
+    "thermicon.perception",
+    Ranking="rank(icons)",
+    Selection="Selection(3)",
+    Trials="read_trials(path)",
+    Crowd="Crowd(people=50)",
+)

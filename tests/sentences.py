@@ -10,7 +10,7 @@ from thermicon.circuit import Limits
 from thermicon.circuit.delivery import delivered_drive as drives
 from thermicon.circuit.delivery.setpoints import Setpoints
 from thermicon.circuit.rig.uncertainty import Uncertainty
-from thermicon.circuit.safety.checks import Before, Check, Scenario
+from thermicon.circuit.safety.checks import Before, Check, Scenario, cures_of, hard_of, hard_reason
 from thermicon.circuit.safety.demands import CutOff, Harm, HeldCutOff, SingleFault
 from thermicon.circuit.safety.gate import Gate
 from thermicon.circuit.safety.repeated import Repeated
@@ -71,8 +71,8 @@ WORDS = {
     "corner": lambda m: m.corner_text((-0.3, *NO_CORNER[1:-1], 0.1)),
     "scenarios": lambda m: [m.scenario_text(run) for run in SCENARIOS],
     "checks": lambda m: [m.check_text(check) for check in (SKIN, COLD, KEPT)],
-    "cures": lambda m: [m.more_and_cure(checks) for checks in BEYOND],
-    "repeated": lambda m: [m.repeated_reason(repeated) for repeated in PAUSES],
+    "cures": lambda m: [m.more_and_cure(hard_of(checks), cures_of(checks)) for checks in BEYOND],
+    "repeated": lambda m: [m.repeated_reason(repeated, hard_reason(repeated.findings)) for repeated in PAUSES],
     "what it is not": lambda m: m.WHAT_IT_IS_NOT,
     **{f"fault, {name}": lambda m, one=one: list(m.fault_table(one).values()) for name, one in FAULTS.items()},
 }

@@ -17,7 +17,7 @@ from thermicon.icons import Icon, IconSet, back, cool, from_samples, load_librar
 from thermicon.perception import Condition, Crowd, Ranking, Selection, Trials, information_bits, rank
 
 ROOT = Path(__file__).resolve().parents[1]
-PACKAGES = ("base", "icons", "circuit", "perception", "notebooks")
+PACKAGES = ("icons", "circuit", "perception", "notebooks")
 DIP = Icon.of("dip", cool(by=4, at=2), back(at=2), control="display", baseline_C=32, site="thenar", means="left")
 WRONG = (None, -7, 2.5, float("nan"), True, b"six", "no such thing", [], {}, object(), pd.DataFrame({"a": [1]}), len)
 RIGHT: dict[str, Any] = {

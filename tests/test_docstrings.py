@@ -9,7 +9,7 @@ import pytest
 from numpydoc.docscrape import NumpyDocString
 from numpydoc.validate import get_doc_object, validate
 
-PACKAGES = ("base", "icons", "circuit", "perception", "notebooks")
+PACKAGES = ("icons", "circuit", "perception", "notebooks")
 ASKED = {"GL07", "GL08", "PR01", "PR02", "PR03", "PR07", "RT01", "EX01", "SS03"}
 """Of numpydoc's checks: order of sections, arguments of the signature, descriptions, returns, examples, a full stop."""
 UNITS = {

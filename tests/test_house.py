@@ -17,6 +17,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 FLOW = ("base", "icons", "circuit", "perception", "notebooks")
 LINES_AT_MOST = 400
+DOORS = {"tests/test_front_door.py", "tests/test_docstrings.py", "tests/test_arguments.py", "tests/docs/test_site.py"}
+"""Tests of what users import, which the ground floor has nothing of."""
 GENERATED = {"build", "dist", "__pycache__", "node_modules"}
 
 # Spelled in pieces so that this file does not find itself.
@@ -28,7 +30,7 @@ UNWANTED = {
 
 
 def module_names() -> list[str]:
-    """Every module of the four packages, by its import name, found without importing anything."""
+    """Every module of the packages, by its import name, found without importing anything."""
     found = []
     for package in FLOW:
         found.append(f"thermicon.{package}")
@@ -39,6 +41,20 @@ def module_names() -> list[str]:
             elif len(parts) > 2:
                 found.append(".".join(("thermicon", *parts[:-1])))
     return found
+
+
+def test_every_list_of_the_packages_knows_all_of_them() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]
+    assert [name.partition(".")[2] for name in project["setuptools"]["package-dir"]][1:] == [*FLOW]
+    assert project["coverage"]["run"]["source"] == ["thermicon", *FLOW]
+    shorter = []
+    for path in (path for path in project_files() if path.suffix == ".py"):
+        here = path.relative_to(ROOT).as_posix()
+        if here.startswith(("tests/", ".ci/", "docs/")) and here not in DOORS:
+            text = path.read_text(encoding="utf-8")
+            shorter += [here for before in re.findall(r'(.{8})"icons", "circuit"', text) if before != '"base", ']
+            shorter += [here for before in re.findall(r"(.{5})icons\|circuit", text) if before != "base|"]
+    assert not shorter
 
 
 def project_files() -> Iterator[Path]:

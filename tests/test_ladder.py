@@ -1,4 +1,4 @@
-"""The ladder: imports only from packages upstream or rooms below.
+"""The ladder: imports only from packages upstream or rooms below, and in no circle of files.
 
 Imports for types alone (under ``TYPE_CHECKING``) are not executed and do not count: drawing rooms stand at the bottom
 and name the objects that they draw by type only.
@@ -114,3 +114,31 @@ def test_a_room_imports_from_rooms_below_it(package: str) -> None:
             if target is None or (target != room and floor[target] >= floor[room]):
                 wrong.append(f"{path.relative_to(ROOT)}:{line} imports {'.'.join(name)}")
     assert not wrong, f"the ladder of {package} is {' < '.join(LADDER[package])}:\n" + "\n".join(wrong)
+
+
+def files_of(package: str, path: Path) -> set[Path]:
+    """The files of this program that a module imports, at its front or later, but for types."""
+    found = set()
+    for _, name, for_types in imports_of(package, path):
+        for length in range(len(name), 2, -1):
+            place = ROOT / Path(*name[1:length])
+            if not for_types and name[0] == "thermicon" and place.with_suffix(".py").is_file():
+                found.add(place.with_suffix(".py"))
+                break
+    return found - {path}
+
+
+def circles(imports: dict[Path, set[Path]]) -> list[list[str]]:
+    """Files that import one another, directly or through others, as names in order."""
+    reached = {path: set(targets) for path, targets in imports.items()}
+    for middle in imports:
+        for targets in reached.values():
+            if middle in targets:
+                targets |= reached[middle]
+    rings = {frozenset(other for other in reached[path] if path in reached.get(other, ())) for path in imports}
+    return sorted(sorted(path.relative_to(ROOT).as_posix() for path in ring) for ring in rings if ring)
+
+
+def test_no_files_import_one_another_in_a_circle() -> None:
+    imports = {path: files_of(package, path) for package in LADDER for path in modules(package)}
+    assert circles(imports) == []

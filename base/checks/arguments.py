@@ -19,11 +19,19 @@ RENAMED = {"norm": "memory now", "intervals": "parameters in Python"}
 LONGEST = 60
 WORDS = {str: "a text", bytes: "bytes", Path: "a path", float: "a number", int: "a whole number",
          bool: "True or False", NoneType: "None", Callable: "a function"}  # fmt: skip
-MADE_BY = {"Icon": 'load_library("six-icons")["cooling-step"]', "IconSet": 'load_library("six-icons")',
-           "Rig": 'Rig.load("thenar")', "Trace": "simulate(icon)", "Ranking": "rank(icons)",
-           "Selection": "Selection(3)", "Drive": "Drive([0, 1], [0, 0.5])", "Trials": "read_trials(path)",
-           "Crowd": "Crowd(people=50)", "Ramp": "cool(by=4, at=2)"}  # fmt: skip
+DOORS: dict[str, None] = {}
+"""Packages whose names annotations use, in the order in which they came."""
+MADE_BY: dict[str, str] = {}
 """How an object of a class is made, for those who gave something else."""
+
+
+def register(*doors: str, **made_by: str) -> None:
+    """Look names of annotations up at front doors, and tell people how objects of their classes are made.
+
+    A package registers itself and those upstream whose names it uses, when it is imported.
+    """
+    DOORS.update(dict.fromkeys(doors))
+    MADE_BY.update(made_by)
 
 
 Changes = Mapping[str, Any]
@@ -115,7 +123,7 @@ class _Names(dict[str, Any]):
     """Names that annotations use; those imported for type checkers alone are looked up at the front doors."""
 
     def __missing__(self, name: str) -> Any:
-        doors = (import_module(f"thermicon.{package}") for package in ("icons", "circuit", "perception"))
+        doors = map(import_module, DOORS)
         found = next((getattr(door, name) for door in doors if name in door.__all__), Any)
         return import_module("pandas") if name == "pd" else found
 

@@ -28,7 +28,7 @@ STALE_S = 90 * 24 * 3600.0
 """Machine code that was not used for this long is removed."""
 SOURCES = (
     *("base/numbers/compiled.py", "base/numbers/vector_math.py", "circuit/rig/module.py", "circuit/safety/*_kernel.py"),
-    *("circuit/safety/tally.py", "circuit/solver/modes.py", "circuit/solver/kernel*.py"),
+    *("circuit/safety/quantities.py", "circuit/solver/modes.py", "circuit/solver/kernel*.py"),
     *("circuit/solver/network.py", "circuit/solver/plates.py"),
     *("perception/kernels/*.py", "perception/selection/subset_identification.py"),
 )

@@ -21,6 +21,7 @@ from ..solver.trace import Trace
 from .delivered_drive import DeliveredDrive, ModuleDrive, Narrowed, ThermodeDrive
 from .device import Device
 from .devicefile import DeviceError
+from .flows import flow_of, start_of
 from .samples import Samples, led, rate_of, sample, within
 from .setpoints import Setpoints, closed, display_of, setpoints_of
 from .temperatures import designed_until
@@ -32,14 +33,9 @@ BRIDGE_ROUNDS = 3
 """Iterations between a bridge's duty and its hot plate; each leaves under a tenth of the previous error."""
 
 
-def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0) -> DeliveredDrive:
-    """Return what a device delivers of a cue on a rig."""
-    return device.kind.deliver(icon, rig, device, tail_s)
-
-
 def deliver_open(icon: Icon, rig: Rig, device: Device, tail_s: float) -> ModuleDrive:
     """Return a cue as a device delivers it whose current nothing corrects."""
-    kind, end, requested = device.kind, duration_s(icon, rig) + tail_s, rig.driver.update_Hz
+    end, requested = duration_s(icon, rig) + tail_s, rig.driver.update_Hz
     plan = design(icon, rig, end)
     rate = rate_of(device, requested, end)
     narrow = within(device, rig)
@@ -52,8 +48,8 @@ def deliver_open(icon: Icon, rig: Rig, device: Device, tail_s: float) -> ModuleD
         warnings = (narrowed.text, *warnings)
     designed = designed_until(led(plan, end, rate), (len(samples.codes) - 1) / rate)
     model = simulate_current(designed, rig, start_C=plan.start_C)
-    delivered = kind.flow(device, rig, samples)
-    trace = simulate_current(delivered, rig, start_C=kind.start(device, rig, samples))
+    delivered = flow_of(device, rig, samples)
+    trace = simulate_current(delivered, rig, start_C=start_of(device, rig, samples))
     return ModuleDrive(
         icon=icon, rig=rig, device=device, requested_Hz=requested, rate_Hz=rate, lead_s=1.0 / rate, played=samples,
         designed=designed, delivered=delivered, designed_trace=model, trace=trace, outcome=plan.outcome,
@@ -68,7 +64,7 @@ def _sampled(
     kind, hotter = device.kind, np.zeros_like(model.time_s)
     found = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
     for _ in range(BRIDGE_ROUNDS if kind.switches and device.duty_rule == "equal heat" else 0):
-        drive, start = kind.flow(device, rig, found[0]), kind.start(device, rig, found[0])
+        drive, start = flow_of(device, rig, found[0]), start_of(device, rig, found[0])
         hot = simulate_current(drive, rig, start_C=start)
         hotter = np.interp(model.time_s, hot.time_s, hot.hot_plate_C) - model.hot_plate_C
         found = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
@@ -77,13 +73,13 @@ def _sampled(
 
 def traces_until(delivery: DeliveredDrive, end_s: float) -> tuple[Trace, Trace]:
     """Return the traces (designed, delivered) until a time in s on the clock of the files, ending at rest."""
-    rig, device, kind = delivery.rig, delivery.device, delivery.device.kind
+    rig, device = delivery.rig, delivery.device
     if isinstance(delivery, ThermodeDrive):
         return traces_of_setpoints(delivery.icon, rig, device, delivery.played, end_s)[:2]
     assert isinstance(delivery, ModuleDrive)
     designed = simulate_current(designed_until(delivery.designed, end_s), rig)
-    drive = _cut(kind.flow(device, rig, delivery.played.until(end_s)), end_s)
-    return designed, simulate_current(drive, rig, start_C=kind.start(device, rig, delivery.played))
+    drive = _cut(flow_of(device, rig, delivery.played.until(end_s)), end_s)
+    return designed, simulate_current(drive, rig, start_C=start_of(device, rig, delivery.played))
 
 
 def _cut(drive: Drive, end_s: float) -> Drive:

@@ -5,27 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from thermicon.base.checks.arguments import checked
 from thermicon.base.files.inputs import named_text, shipped_names
 from thermicon.base.files.records import Record
 
+from .commands import Scale
 from .devicefile import DeviceError, DrivenBy, read_device_table
-
-if TYPE_CHECKING:
-    from .kinds import Kind
-
-
-@dataclass(frozen=True, slots=True)
-class Scale:
-    """Whole codes to a command: `offset + step · code`, codes `lowest` … `highest`; `unit` is V, A, 1 or °C."""
-
-    offset: float
-    step: float
-    lowest: int
-    highest: int
-    unit: str
+from .kinds import KINDS, Kind
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,8 +101,6 @@ class Device:
     @property
     def kind(self) -> Kind:
         """The kind of device that it is, by what it is driven by."""
-        from .kinds import KINDS
-
         return KINDS[self.driven_by]
 
     @property

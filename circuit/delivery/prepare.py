@@ -12,16 +12,17 @@ from thermicon.base.words.number_text import signed
 from thermicon.icons import Icon
 
 from ..rig.rig import Rig
+from ..safety.checks import cures_of, hard_of
 from ..safety.gate import Gate
 from ..safety.repeated import check_pause
 from ..safety.words import more_and_cure
 from ..solver.trace import Outcome
-from .deliver import deliver
 from .delivered_drive import DeliveredDrive, DeliveryDeviation, ModuleDrive, loss_limit
 from .device import Device
 from .formats import Format
 from .setpoints import Setpoints
-from .worstcase import OpenLoopSpread, open_loop_spread, worst_cases
+from .ways import deliver, worst_cases
+from .worstcase import OpenLoopSpread, open_loop_spread
 
 Judge = Callable[[Sequence[DeliveredDrive], float | None], Sequence[Gate]]
 """A function that judges delivered cues, as `worst_cases` does."""
@@ -111,7 +112,8 @@ def refusals_of(delivery: DeliveredDrive, verdict: Gate, deviation: DeliveryDevi
     if verdict.colour == "red":
         cause, longer = verdict.reason or "the gate says red", verdict.mended_by_pause
         changes = {"pause_s": verdict.repeated.shortest_pause_s} if longer else {}
-        refusals.append(Refusal("unsafe", cause if longer else cause + more_and_cure(verdict.findings), (), changes))
+        more = more_and_cure(hard_of(verdict.findings), cures_of(verdict.findings))
+        refusals.append(Refusal("unsafe", cause if longer else cause + more, (), changes))
     lost = lost_text(deviation)
     if delivery.outcome is not None and not delivery.outcome.reached:
         text = _out_of_reach(delivery, delivery.outcome, verdict.colour != "red")

@@ -14,7 +14,8 @@ from thermicon.base.words.number_text import signed
 from ..rig.rig import Rig
 from ..solver.drive import Drive
 from ..solver.inverse import Design
-from .device import Device, Scale
+from .commands import Scale
+from .device import Device
 from .devicefile import DeviceError
 
 DENSEST_HZ = 10_000.0

@@ -3,7 +3,6 @@
 A thermode shows its own set-points at its own tick: they are judged as they stand, with its lag and without.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,23 +11,18 @@ from thermicon.base.numbers.arrays import Array
 
 from ..safety.corners import corners_of
 from ..safety.display import DisplayCourse
-from ..safety.gate import Gate
 from ..solver.batch_inputs import Bank, cut, run_forward
 from ..solver.network import network_of
 from ..solver.simulate import rows_until
 from ..solver.steady import state_under_current
 from .delivered_drive import DeliveredDrive, ModuleDrive, ThermodeDrive
+from .flows import start_of
 from .setpoints import display_of, lag_of
 
 AT_ONCE, LAGGED = "followed at once", "followed with its lag"
 
 SETTLED_LAGS = 12.0
 """After this many lags a display is within 1e-5 of its last step."""
-
-
-def worst_cases(deliveries: Sequence[DeliveredDrive], pause_s: float | None = None) -> tuple[Gate, ...]:
-    """Check what one device delivers of several cues on one rig, which may be played repeatedly in any order."""
-    return deliveries[0].device.kind.judge(deliveries, pause_s)
 
 
 def ways_of(delivery: DeliveredDrive) -> tuple[DisplayCourse, ...]:
@@ -65,7 +59,7 @@ def open_loop_spread(delivery: DeliveredDrive) -> OpenLoopSpread | None:
     for corner in corners_of(delivery.rig):
         gain, network = 1.0 + corner.gain_relative, network_of(corner.rig)
         try:
-            start = device.kind.start(device, corner.rig, delivery.played, gain)
+            start = start_of(device, corner.rig, delivery.played, gain)
             starts.append(state_under_current(network, float(drive.current_A[0]) * gain) if start is None else start)
         except ArithmeticError:
             continue

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..solver.draw import COOL, DISPLAY, PROBE, SKIN, WARM, new_axes, tidy
-from .rig_fit import ChannelFit, RigFit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from .rig_fit import ChannelFit, RigFit
 
 COLORS = {"display_C": DISPLAY, "skin_C": SKIN, "hot_plate_C": WARM, "voltage_V": COOL}
 POINTS = "#b9bec4"

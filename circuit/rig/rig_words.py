@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from thermicon.base.files.inputs import shipped_names
 from thermicon.base.files.records import shipped_records
 from thermicon.base.words.number_text import signed
 
@@ -177,14 +178,13 @@ def _module(rig: Rig) -> Iterator[Unusual]:
 
 
 def _site(rig: Rig) -> Iterator[Unusual]:
-    from .rig import Rig, rig_names
-
     stated = changed(rig.changes)
     if "skin.site" not in stated or any(key.split(".")[:2] == ["skin", "layer"] for key in stated):
         return
-    there = [shipped for name in rig_names() if (shipped := Rig.load(name)).site == rig.site]
-    if any(shipped.skin.layers == rig.skin.layers for shipped in there):
+    shipped = map(type(rig).load, sorted(shipped_names("rigs"), key=lambda name: name != "thenar"))
+    there = [each for each in shipped if each.site == rig.site]
+    if any(each.skin.layers == rig.skin.layers for each in there):
         return
-    names = " or ".join(f"rig {shipped.name}" for shipped in there)
+    names = " or ".join(f"rig {each.name}" for each in there)
     cure = f"use {names}, or set skin.layer" if there else "use a rig file of that site, or set skin.layer"
     yield unusual("site", rig=rig, cure=cure)

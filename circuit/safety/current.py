@@ -23,14 +23,16 @@ from ..solver.drive import Drive
 from ..solver.network import unpowered
 from ..solver.steady import state_under_current
 from .checks import Before, Check, Scenario
+from .demanded import demanded
 from .demands import Demands
 from .ensemble import Ensemble, LaneDrives
-from .plant import ENDING_ROWS_S, LATE_S, LATER_S, OFF_ROWS_S, Future, Plant, Single, Stretch
+from .plant import ENDING_ROWS_S, LATE_S, OFF_ROWS_S, Future, Plant, Single, Stretch
 from .playmap import PlayMap, least_bound
 from .polarity import TEST_S, testing_A
 from .repeated import Repeating
 from .simulated import bound, steady_cycle
 from .single_faults import instants, side_by_side
+from .spans import LATER_S
 from .tally import COLDEST_C, HOTTEST_C, WATCHED, Tally
 
 ENDINGS = ("last value held", "zero current", "power off")
@@ -217,8 +219,6 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         shortest_s: float | None,
     ) -> tuple[float | None, list[tuple[Demands, tuple[Check, ...]]]]:
         """Demands against a host that stops, a driver that is stuck, and faults of a first play."""
-        from .demanded import demanded
-
         return demanded(self, [single for (single,) in singles], recovered_s, repeating, tallies, shortest_s)
 
 

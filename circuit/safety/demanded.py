@@ -12,6 +12,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import repeat
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,7 +20,6 @@ from ..rig.rules import Limits
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 from .checks import Check, colour_of
-from .current import CurrentPlant, CurrentPlay
 from .demands import CutOff, Demands, HeldCutOff, SingleFault
 from .display import for_good_C
 from .ensemble import Ensemble
@@ -29,17 +29,22 @@ from .held import BEYONDS_K, HeldSkin, Span, Stages, one_stage, two_stages
 from .in_plays import InPlays, found_at_rest, found_in_plays
 from .plant import Single
 from .polarity import least_fall_K, polarity_check, where_tests_begin
-from .repeated import LONGEST_PAUSE_S, PAUSE_STEP_S, PRACTICAL_S, Repeating, lengthened_s
+from .repeated import LONGEST_PAUSE_S, PAUSE_STEP_S, Repeating, lengthened_s
 from .shown import Shown, healthy_C, longest_rest_s, shown_between
 from .single_faults import Faulty
+from .spans import PRACTICAL_S
 from .starts import Beginning, Starts
 from .stuck_rate import Limited, limited
 from .tally import HOTTEST_C, WATCHED, Tally
 from .ways_out import with_ways_out_of_drives
 
+if TYPE_CHECKING:
+    from .current import CurrentPlant, CurrentPlay
+
+    Singles = Sequence[Single[CurrentPlay, State]]
+
 Found = tuple[Demands, tuple[Check, ...]]
 """What the hardware must prevent, and checks that fail where it cannot."""
-Singles = Sequence[Single[CurrentPlay, State]]
 
 
 def demanded(

@@ -25,10 +25,11 @@ from .corners import contact_corners
 from .demands import CutOff, Demands, SingleFault
 from .fault_limits import COLUMN_OF, FELT_COLUMNS
 from .held import INSIDE_K, Span, around_C, stays
-from .plant import ENDING_ROWS_S, ENDING_S, LATE_S, OFF_ROWS_S, Future, Plant, Single, Stretch, left_s
+from .plant import ENDING_ROWS_S, LATE_S, OFF_ROWS_S, Future, Plant, Single, Stretch, left_s
 from .playmap import PlayMap, least_bound
-from .repeated import LONGEST_PAUSE_S, PRACTICAL_S, Repeating, lengthened_s
+from .repeated import LONGEST_PAUSE_S, Repeating, lengthened_s
 from .single_faults import MARGIN
+from .spans import ENDING_S, PRACTICAL_S
 from .starts import Beginning, Starts
 from .tally import WATCHED, Tally
 

@@ -17,9 +17,10 @@ from .current import CurrentPlant, CurrentPlay
 from .demands import Demands
 from .display import DisplayCourse, DisplayPlant
 from .ensemble import Ensemble
-from .plant import ENDING_S, Plant, Played, Single, States
+from .plant import Plant, Played, Single, States
 from .repeated import LONGEST_PAUSE_S, Repeated, Repeating, check_pause, plays_in, shortest_pause_s
 from .simulated import check_length
+from .spans import ENDING_S
 
 
 @dataclass(frozen=True, slots=True)

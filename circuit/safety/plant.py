@@ -19,16 +19,11 @@ from ..rig.rules import Limits
 from .checks import Check, Scenario, worst_of
 from .corners import Corner
 from .demands import Demands
+from .spans import ENDING_S, LATER_S
 from .tally import WATCHED, Tally
 
 if TYPE_CHECKING:
     from .repeated import Repeating
-
-ENDING_S = 60.0
-"""How long each ending is followed in full: until somebody has noticed."""
-
-LATER_S = 600.0
-"""Zero current adds to the dose for 10 min, where the classes of contact of IEC 60601-1 Table 24 end."""
 
 ENDING_ROWS_S = np.concatenate([np.arange(200) * 0.01, 2.0 + np.arange(180) * 0.1, 20.0 + np.arange(41) * 1.0])
 """Times of the rows of an ending: fine after the jump of the current, coarse later."""

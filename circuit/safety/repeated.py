@@ -14,7 +14,7 @@ from thermicon.base.files.inputs import InputError
 from thermicon.base.numbers.arrays import Array
 
 from ..rig.rules import Limits
-from .checks import Before, Check, Judged, Scenario, colour_of
+from .checks import Before, Check, Judged, Scenario, colour_of, hard_reason
 from .plant import RECOVERY_ROWS_S, GatePlay, Plant, Played, States, follow, left_s
 from .playmap import UnjudgedError
 from .tally import Tally
@@ -24,9 +24,6 @@ LONGEST_PAUSE_S = 600.0
 
 PAUSE_STEP_S = 0.1
 """Safe pauses are searched, and reported, in steps of this."""
-
-PRACTICAL_S = 0.1
-"""A watchdog and a cut-off this quick are demanded rather than a longer pause, quicker ones are not: assumed."""
 
 
 class PauseError(InputError):
@@ -72,7 +69,7 @@ class Repeated(Judged):
         """The first hard limit passed, in one sentence with its cure; None where there is none."""
         from .words import repeated_reason
 
-        return repeated_reason(self)
+        return repeated_reason(self, hard_reason(self.findings))
 
     def to_dict(self) -> dict[str, object]:
         """All of it, as a sidecar holds it."""

@@ -15,6 +15,7 @@ from ..rig.rules import Limits, Rule
 from .checks import AS_TOLD, LEVEL, Check, Scenario
 from .corners import Corner
 from .exposure import constants
+from .quantities import CODE_OF, RATE, WARMER
 
 WATCHED = ("skin_C", "display_C", "cold_receptor_C", "hot_plate_C")
 """Columns of a run that limits are about."""
@@ -23,20 +24,6 @@ COLDEST_C, HOTTEST_C = -273.0, 1000.0
 """A run that diverges counts as this hot, so that it fails every limit instead of being lost as NaN."""
 
 SPAN_C = np.array([COLDEST_C, HOTTEST_C])
-
-SKIN, DISPLAY, RECEPTOR, HOT_PLATE, RATE, DOSE, BURN, WARMER = range(8)
-"""Codes of quantities: the columns of WATCHED, then what is computed from them; the last three add up."""
-
-_CODE_OF = {
-    **dict.fromkeys(("skin surface", "numbness", "cold pain", "heat pain"), SKIN),
-    "display": DISPLAY,
-    "cold-receptor depth": RECEPTOR,
-    "hot plate": HOT_PLATE,
-    "rate of skin temperature": RATE,
-    "thermal dose": DOSE,
-    "Henriques integral": BURN,
-}
-"""Quantities of rules, other than the time of the display above a temperature."""
 
 
 class Tally:
@@ -169,6 +156,6 @@ def _code_of(rule: Rule) -> int:
     """The code of the quantity that a rule limits, as the kernel expects it; none is judged as another."""
     if rule.above_C is not None:
         return WARMER
-    if rule.quantity not in _CODE_OF:
+    if rule.quantity not in CODE_OF:
         raise ValueError(f"{rule.quantity}: a limit that nothing computes; give the quantity a code in safety/tally.py")
-    return _CODE_OF[rule.quantity]
+    return CODE_OF[rule.quantity]

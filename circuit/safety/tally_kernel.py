@@ -9,7 +9,7 @@ import numpy as np
 from thermicon.base.numbers.compiled import kernel
 
 from ..rig.module import ZERO_C_IN_K
-from .tally import BURN, DISPLAY, DOSE, RATE, SKIN
+from .quantities import BURN, DISPLAY, DOSE, RATE, SKIN
 
 LEVEL_K = 1e-5
 """Rows closer than this count as level, since a difference of primitives would be rounding noise."""

@@ -1,20 +1,24 @@
 """Verdicts in words, from their records.
 
-Nothing is decided here and nothing that decides imports this module: it is loaded when somebody reads.
+Nothing is decided here, and records load this module when somebody reads them: it knows them by their types only.
 """
+
+from __future__ import annotations
 
 from collections.abc import Sequence
 from math import isnan
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from thermicon.base.files.inputs import shipped_table
 from thermicon.base.words.number_text import signed, significant, unit_text
 
 from ..rig.uncertainty import WORDS
-from .checks import Check, Cure, Scenario, cures_of, hard_of, hard_reason
-from .demands import Harm, SingleFault
-from .plant import ENDING_S
-from .repeated import PRACTICAL_S, Repeated
+from .spans import ENDING_S, PRACTICAL_S
+
+if TYPE_CHECKING:
+    from .checks import Check, Cure, Scenario
+    from .demands import Harm, SingleFault
+    from .repeated import Repeated
 
 WHAT_IT_IS_NOT = (
     "This is a calculation, not a medical or ethical clearance. Hardware that touches people needs a temperature "
@@ -81,21 +85,19 @@ def check_text(check: Check) -> str:
     return f"{reached}, {of_limit}{since} ({check.source})"
 
 
-def more_and_cure(findings: Sequence[Check]) -> str:
-    """The end of a refusal's text: every other exceeded hard limit, and what would cure all of them."""
+def more_and_cure(hard: Sequence[Check], cures: Sequence[Cure]) -> str:
+    """The end of a refusal's text: every exceeded hard limit but the first, and what would cure all of them."""
     others = [
         f"{check.quantity} {value}{unit_text(check.unit)} (limit {limit})"
-        for check in hard_of(findings)[1:]
+        for check in hard[1:]
         for value, limit in (figures(check),)
     ]
     more = f"; also beyond hard limits: {', '.join(others)}" if others else ""
-    cures = [CURES[cure] for cure in cures_of(findings)]
-    return f"{more}; use {', '.join(cures)}" if cures else more
+    return f"{more}; use {', '.join(CURES[cure] for cure in cures)}" if cures else more
 
 
-def repeated_reason(repeated: Repeated) -> str | None:
-    """The first hard limit that repetition passes, in one sentence with its cure; None where there is none."""
-    reason = hard_reason(repeated.findings)
+def repeated_reason(repeated: Repeated, reason: str | None) -> str | None:
+    """The first hard limit that repetition passes, its `reason`, with its cure; None where there is none."""
     if reason is None and repeated.too_soon:
         reason = (
             f"with {repeated.pause_s:g} s between plays a host that hangs or a driver stuck at its limit passes a hard "

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 from thermicon.base.numbers.arrays import Array
 
-from .trace import Trace
-
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from .trace import Trace
 
 COOL, WARM, DISPLAY, SKIN, TARGET, LIMIT = "#2166ac", "#e08214", "#6b6b6b", "#111111", "#9a9a9a", "#b2182b"
 PROBE = "#5e3c99"

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from .parameter import Path
+from .played import played_icons
 from .statements import Broken, Current, Hold, Play, Pulse, Ramp, Repeat, Rest, Statement, Step, Total, Wave
 from .units import Control, Kind, quantity
 
@@ -113,8 +114,6 @@ def quoted(text: str) -> str:
 
 
 def _needed(icon: "Icon | Family", found: "dict[str, Icon]") -> "dict[str, Icon]":
-    from .icon import played_icons
-
     for played in played_icons(_body(icon)):
         if played.name not in found:
             _needed(played, found)
@@ -123,9 +122,7 @@ def _needed(icon: "Icon | Family", found: "dict[str, Icon]") -> "dict[str, Icon]
 
 
 def _body(icon: "Icon | Family") -> tuple[Statement, ...]:
-    from .icon import Icon
-
-    return icon.statements if isinstance(icon, Icon) else icon.template
+    return icon.template if hasattr(icon, "template") else icon.statements
 
 
 def _file(set_lines: list[str], icons: "Iterable[Icon | Family]") -> str:

@@ -1,7 +1,6 @@
 """An icon: a name with statements, their context, metadata, all checked on construction."""
 
 import hashlib
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
@@ -17,6 +16,7 @@ from .corners import Corners, Quantity, corners
 from .errors import CueError, CueErrors
 from .format import icon_text, statement_text
 from .motion import TOLERANCE
+from .played import all_played
 from .statements import LEAVES, Play, Repeat, Statement
 from .units import Control, exact, fault
 
@@ -162,24 +162,5 @@ def content_hash(text: str) -> str:
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
 
 
-def all_played(body: "tuple[Statement, ...]", seen: set[int] | None = None) -> Iterator[Icon]:
-    """Yield the icons that statements play, and those that these play in turn, each object once."""
-    seen = set() if seen is None else seen
-    for icon in played_icons(body):
-        if id(icon) not in seen:
-            seen.add(id(icon))
-            yield icon
-            yield from all_played(icon.statements, seen)
-
-
 def _sound(part: object) -> bool:
     return all(map(_sound, part.body)) if isinstance(part, Repeat) else isinstance(part, (Play, *LEAVES))
-
-
-def played_icons(body: "tuple[Statement, ...]") -> Iterator[Icon]:
-    """Yield the icons that statements play, in order, those within repeats included."""
-    for part in body:
-        if isinstance(part, Play):
-            yield part.icon
-        elif isinstance(part, Repeat):
-            yield from played_icons(part.body)  # type: ignore[arg-type]

@@ -15,8 +15,9 @@ from thermicon.base.words.clean_text import name_fault, text_fault
 from .context import Context, Metadata
 from .family import Family
 from .format import set_text
-from .icon import Icon, content_hash, played_icons
+from .icon import Icon, content_hash
 from .members import Extremes
+from .played import played_icons
 from .units import quantity
 from .words import nearest
 

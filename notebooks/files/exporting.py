@@ -34,7 +34,8 @@ def felt_in(
     simulated after the last corner.
     """
     from thermicon.base.files.inputs import InputError
-    from thermicon.circuit.delivery.deliver import deliver, traces_until
+    from thermicon.circuit.delivery.deliver import traces_until
+    from thermicon.circuit.delivery.ways import deliver
     from thermicon.circuit.solver.simulate import duration_s
     from thermicon.perception.identification.delivered import PEOPLE, detected_as_delivered, judge_delivered
     from thermicon.perception.identification.population import TAIL_S, run_end_s

@@ -1,15 +1,19 @@
 """A validation report as plain data for `validation.json`, with None for missing values."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..observer.channels import VARIABLES
 from .predicted import Predicted
 from .results import PredictedRow, judging_predictions, load_predictions, median_half_width
 from .rows import load_evidence
-from .validate import JudgedRow, ReportRow, ValidationReport
 from .verdicts import criterion_of_row
+
+if TYPE_CHECKING:
+    from .validate import JudgedRow, ReportRow, ValidationReport
 
 
 def report_file(report: ValidationReport) -> dict[str, Any]:

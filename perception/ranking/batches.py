@@ -18,7 +18,7 @@ from thermicon.base.numbers.program import code_digest as digest_of
 from thermicon.circuit import Rig
 from thermicon.icons import Icon
 
-from ..identification.confusion import NAMED_SAMPLES, SAMPLES, normalised, sampling_error
+from ..identification.confusion import SAMPLES
 from ..identification.measures import experiments_bits, information_bits
 from ..identification.population import (
     RATE_HZ,
@@ -244,56 +244,6 @@ def felt_by_people(job: Job, first: int, step: Callable[[], None]) -> Iterator[F
         if number in (-(-first // job.at_once), job.batches):
             detected, cold, pairs = (np.concatenate(values) for values in zip(*held, strict=True))
             yield FeltResult(pooled_detection(detected, cold, reports, report_step(DT_S)), detected, pairs)
-
-
-def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None]) -> PooledResult:
-    """Compute every batch, as `rank` has the keywords; `step` is called after each.
-
-    Place and order of work do not change the result.
-    """
-    each: Iterator[tuple[int, BatchResult]]
-    parts: dict[int, BatchResult] = {}
-    blur = 0.0
-    if isinstance(workers, str):
-        from .cluster import on_cluster
-
-        each = on_cluster(job, workers)
-    else:
-        # At most two batches per thread are in memory.
-        each = enumerate(in_order(lambda number: run(job, number), range(job.batches), workers or cores()))
-    for number, found in each:
-        blur = max(blur, _sampling_error(job, found.confusion))
-        # Confusions are most of a batch, and are needed only as their sum.
-        parts[number] = replace(found, confusion=found.confusion.sum(axis=0))
-        step()
-    ordered = [parts[number] for number in range(job.batches)]
-
-    def joined(name: str) -> Array:
-        return np.concatenate([getattr(part, name) for part in ordered])
-
-    # In order, so that the sums do not depend on which batch was ready first.
-    mean = normalised(np.asarray(sum(part.confusion for part in ordered)) / job.people)
-    reports = np.asarray(sum(part.reported[0] for part in ordered))
-    return PooledResult(
-        detection=pooled_detection(joined("detected"), joined("cold_share"), reports, report_step(DT_S)),
-        reports=joined("detected"),
-        pairs=joined("d_prime"),
-        pooled=mean,
-        each_correct=joined("correct"),
-        bits=joined("bits"),
-        plugin=joined("plugin"),
-        other_correct=joined("other_correct").mean(axis=0),
-        standard_error=_sampling_error(job, mean, job.people),
-        person_standard_error=blur,
-    )
-
-
-def _sampling_error(job: Job, confusion: Array, people: int = 1) -> float:
-    """Largest standard error of a cell to which so many people give answers; 0 where cells are exact."""
-    direct = job.memory == "naming"
-    if len(job.icons) <= (1 if direct else 2):
-        return 0.0
-    return sampling_error(confusion, people * (NAMED_SAMPLES if direct else SAMPLES))
 
 
 def code_digest() -> str:

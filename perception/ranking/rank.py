@@ -20,7 +20,8 @@ from ..identification.task import USUAL, Task
 from ..kernels.parallel import Progress, step_counter
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..sensation.percept import perceive
-from .batches import TRIALS, Job, collect_batches
+from .batches import TRIALS, Job
+from .collected import collect_batches
 from .ranking import Ranking
 from .rules_of_thumb import rig_rules
 from .scores import assemble, objection, worst_of

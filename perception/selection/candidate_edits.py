@@ -19,7 +19,7 @@ from thermicon.circuit.solver.inverse import baseline_C
 from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import CueErrors, Icon
 from thermicon.icons.model.format import statement_text
-from thermicon.icons.model.icon import all_played
+from thermicon.icons.model.played import all_played
 from thermicon.icons.model.statements import Repeat, Total
 
 from ..identification.population import run_end_s

@@ -24,6 +24,7 @@ from ..ranking.batches import FeltResult, Job
 from ..ranking.ranking import Ranking
 from .appraise import REACHED_BY, Appraisal, appraise, nearest_two
 from .goal import Goal
+from .goal_result import SetOutcome, judge_goal
 from .max_min_subset import SubsetChoice
 from .pool import Pool
 from .request import ChoiceError, Objective, Selection, check_selection
@@ -217,8 +218,6 @@ class Chooser:
         Where it misses the goal, the next best are judged too, unless it is wanted `alone`. `step` is called once, and
         after each draw.
         """
-        from .goal_result import SetOutcome, judge_goal  # which judges choices
-
         picked = self._picked(count, restarts)
         if picked is None:
             return None

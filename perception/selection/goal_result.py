@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,9 +18,11 @@ from thermicon.base.words.number_text import listed
 
 from ..ranking.batches import FeltResult
 from ..ranking.ranking import Ranking
-from .choose import Choice
 from .goal import SAFETY, VERDICTS, Goal, GoalPart
 from .pool import Pool
+
+if TYPE_CHECKING:
+    from .choose import Choice
 
 TOLERANCE = 1e-9
 

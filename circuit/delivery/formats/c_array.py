@@ -16,11 +16,11 @@ from thermicon.base.numbers.arrays import Array
 from thermicon.base.words.clean_text import clean_line
 
 from ...safety.demands import Demands, HeldCutOff
+from ..commands import Column
 from ..delivered_drive import DeliveredDrive
 from .form import (
     PLAYS_SAMPLES,
     PLAYS_TEMPERATURES,
-    Column,
     Format,
     FormatError,
     Played,

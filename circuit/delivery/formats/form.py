@@ -15,6 +15,7 @@ from thermicon.icons.model.corners import Corners
 from ...safety.demands import Demands, How
 from ...solver.inverse import baseline_C
 from ...solver.steady import steady_state
+from ..commands import Column
 from ..delivered_drive import DeliveredDrive
 from ..device import Device
 from ..samples import Samples
@@ -42,15 +43,6 @@ class Event:
     name: str
     time_s: float
     level: float
-
-
-@dataclass(frozen=True, slots=True)
-class Column:
-    """A column, channel or list of numbers in a file: its name, its unit and what it means."""
-
-    name: str
-    unit: str
-    meaning: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,11 +11,12 @@ import numpy as np
 from ...play.script import COURSE_EVERY_S, JudgedDrive, script
 from ...play.watch import UNSUPERVISED_S, Numbers
 from ...safety.demands import Demands
+from ..commands import Column
 from ..delivered_drive import DeliveredDrive
 from ..device import Device
 from ..setpoints import Setpoints
 from .c_array import command_for
-from .form import Column, Format, FormatError, Played, course_C, events_in, samples_of
+from .form import Format, FormatError, Played, course_C, events_in, samples_of
 from .tables import CSV, SERIAL, SETPOINT_CSV, has_voltage, volts_of, write_rows
 
 SET_FILES = CONDITIONS, PLAYER = "conditions.csv", "play_icons.py"

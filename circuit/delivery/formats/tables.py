@@ -13,10 +13,11 @@ import numpy.typing as npt
 
 from thermicon.base.numbers.arrays import Array
 
+from ..commands import Column
 from ..delivered_drive import DeliveredDrive, ModuleDrive, ThermodeDrive
 from ..device import Device
 from ..setpoints import Setpoints
-from .form import PLAYS_SAMPLES, PLAYS_TEMPERATURES, Column, Format, FormatError, events_in, samples_of
+from .form import PLAYS_SAMPLES, PLAYS_TEMPERATURES, Format, FormatError, events_in, samples_of
 
 FIRST = "rest"
 TIME = Column("time_s", "s", "time of the row; the icon begins in the second row, and a row is held until the next")

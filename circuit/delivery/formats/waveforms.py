@@ -11,9 +11,10 @@ import numpy as np
 
 from thermicon.base.numbers.program import own_version
 
+from ..commands import Column
 from ..delivered_drive import DeliveredDrive
 from ..device import Device
-from .form import PLAYS_SAMPLES, PLAYS_TEMPERATURES, Column, Format, FormatError, samples_of
+from .form import PLAYS_SAMPLES, PLAYS_TEMPERATURES, Format, FormatError, samples_of
 from .tables import CODE, VOLTAGE, has_voltage, volts_of
 
 FULL = 32768

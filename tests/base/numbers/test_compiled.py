@@ -189,7 +189,7 @@ def test_what_others_can_write_is_never_read(run: Run, sources: Path, cache: Pat
     [
         ((os, "access"), lambda *_: False, "compiled code cannot be stored, so that every run compiles it again: "),
         ((Path, "exists"), Mock(side_effect=PermissionError(13, "Not allowed")), "cannot be created (Not allowed)"),
-        ((compiled, "__file__"), os.fsdecode(b"/Gr\xff/circuit/compiled.py"), "cannot read; set PYTHONUTF8=1"),
+        ((compiled, "__file__"), os.fsdecode(b"/Gr\xff/base/numbers/compiled.py"), "cannot read; set PYTHONUTF8=1"),
     ],
     ids=["not written", "not entered", "not readable"],
 )

@@ -8,7 +8,7 @@ from thermicon.circuit import Device, Gate, Rig
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import Format
 from thermicon.circuit.delivery.prepare import Prepared, prepare_set
-from thermicon.circuit.delivery.worstcase import worst_cases
+from thermicon.circuit.delivery.ways import worst_cases
 from thermicon.icons import Icon, parse
 
 Judge = Callable[[DeliveredDrive], Gate]

@@ -8,13 +8,14 @@ import pytest
 
 from tests.circuit.delivery.one_drive import changed, icon_of, worst_case
 from thermicon.circuit import Device, Rig, simulate
-from thermicon.circuit.delivery.deliver import deliver, traces_until
+from thermicon.circuit.delivery.deliver import traces_until
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive, DeliveryDeviation, Deviation
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats.form import events_of
 from thermicon.circuit.delivery.prepare import lost_text
 from thermicon.circuit.delivery.samples import rate_of, within
 from thermicon.circuit.delivery.setpoints import Setpoints, closed, setpoints_of
+from thermicon.circuit.delivery.ways import deliver
 from thermicon.circuit.solver.drive import duty_of, switched
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import network_of
@@ -234,7 +235,7 @@ class TestSetpoints:
         assert (found.lead_s, found.end_s, found.rate_Hz) == (0.0, 8.0, 100.0)
         assert not found.trace.has_current
         with pytest.raises(DeviceError, match=r"qst-tcs2 is a thermode: its current is not known"):
-            self.THERMODE.kind.flow(self.THERMODE, RIG, deliver(STEP, RIG, DAC).played)
+            flow_of(self.THERMODE, RIG, deliver(STEP, RIG, DAC).played)
         words = r"qst-tcs2 is a thermode: it takes temperatures, and ramp prescribes a current; use control display"
         with pytest.raises(DeviceError, match=words):
             deliver(RAMP_A, RIG, self.THERMODE)

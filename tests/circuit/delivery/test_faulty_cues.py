@@ -9,10 +9,10 @@ from tests.builders import messages
 from tests.circuit.delivery.one_drive import icon_of, prepare, worst_case
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Drive, Rig
-from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
 from thermicon.circuit.delivery.prepare import Prepared
+from thermicon.circuit.delivery.ways import deliver
 from thermicon.circuit.safety.ensemble import Ensemble, row_of
 from thermicon.icons import Icon
 

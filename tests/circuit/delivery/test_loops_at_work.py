@@ -22,9 +22,9 @@ from tests.circuit.delivery.loops_at_work import Controllers, at_work
 from tests.circuit.delivery.one_drive import icon_of, prepare, worst_case
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Rig
-from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
+from thermicon.circuit.delivery.ways import deliver
 from thermicon.circuit.safety.demands import Demands
 from thermicon.circuit.safety.gate import Gate
 from thermicon.icons import Icon, load_library

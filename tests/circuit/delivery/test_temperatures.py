@@ -11,10 +11,10 @@ from tests.circuit.delivery.one_drive import changed, icon_of, prepare, worst_ca
 from tests.circuit.surerig import sure_rig
 from tests.circuit.verdicts import GreenVerdict
 from thermicon.circuit import Device, Drive, Rig, simulate, simulate_current
-from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
+from thermicon.circuit.delivery.ways import deliver
 from thermicon.circuit.delivery.worstcase import open_loop_spread
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.corners import corners_of

@@ -15,14 +15,14 @@ from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Drive, Rig, gate, simulate_current
 from thermicon.circuit.delivery.controlled import _rest_s as rest_s
 from thermicon.circuit.delivery.controlled import samples_of
-from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.prepare import Prepared
 from thermicon.circuit.delivery.temperatures import FollowingModule, follow_samples
-from thermicon.circuit.delivery.worstcase import ways_of, worst_cases
+from thermicon.circuit.delivery.ways import deliver, worst_cases
+from thermicon.circuit.delivery.worstcase import ways_of
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.safety.checks import worst_of
+from thermicon.circuit.safety.checks import cures_of, hard_of, worst_of
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay, single_of_lanes
 from thermicon.circuit.safety.display import DisplayPlant
@@ -189,7 +189,7 @@ class TestFollowedSetPoints:
     def test_a_baseline_beyond_a_limit_is_named_as_the_cause(self) -> None:
         icon = icon_of("warm by 1 °C at 1 °C/s", baseline=47)
         found = worst_case(deliver(icon, SURE, Device.load("closed-loop-controller")))
-        assert more_and_cure(found.findings).endswith(
+        assert more_and_cure(hard_of(found.findings), cures_of(found.findings)).endswith(
             "use a baseline nearer to resting skin, since it is beyond the limit from the start"
         )
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Device, Drive, Gate, Rig, export, fit, simulate, simulate_current
-from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.device import device_names
 from thermicon.circuit.delivery.formats import format_names, load_format
+from thermicon.circuit.delivery.ways import deliver
 from thermicon.circuit.fitting.identify import FittedParameter, cures, identified
 from thermicon.circuit.fitting.keys import COMMON, CONTACT, free_keys
 from thermicon.circuit.fitting.log import Log, read_log

@@ -9,7 +9,8 @@ from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.safety.corners import Corner
 from thermicon.circuit.safety.current import without_power
 from thermicon.circuit.safety.ensemble import Ensemble
-from thermicon.circuit.safety.plant import ENDING_ROWS_S, ENDING_S
+from thermicon.circuit.safety.plant import ENDING_ROWS_S
+from thermicon.circuit.safety.spans import ENDING_S
 from thermicon.circuit.solver.drive import Drive
 
 

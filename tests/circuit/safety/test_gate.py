@@ -162,7 +162,7 @@ def test_a_limit_that_is_just_exceeded_reads_as_exceeded() -> None:
         "skin surface reaches 42.003 °C at 1.00 s, above the hard limit of 42 °C from 1.00 s on"
     )
     other = replace(check, quantity="display", value=-0.0004, limit=0.0, upper=False)
-    assert "display −0.0004 °C (limit 0)" in more_and_cure([check, other])
+    assert "display −0.0004 °C (limit 0)" in more_and_cure([check, other], ())
     assert replace(check, value=41.9999999, since_s=None).figures == ("42", "42")
 
 
@@ -201,7 +201,10 @@ def test_each_cure_is_of_some_quantity_and_has_its_words(cure: Cure) -> None:
     quantity = "skin surface" if at_once else next(name for name, known in CURE_OF.items() if known == cure)
     check = Check(quantity, "hard", 50.0, 42.0, "°C", 1.0, 0.0 if at_once else 0.5, "source")
     assert cures_of([check]) == (cure,)
-    assert more_and_cure([check, check]) == f"; also beyond hard limits: {quantity} 50 °C (limit 42); use {CURES[cure]}"
+    assert (
+        more_and_cure([check, check], (cure,))
+        == f"; also beyond hard limits: {quantity} 50 °C (limit 42); use {CURES[cure]}"
+    )
 
 
 def test_a_limit_that_counts_from_the_start_says_so() -> None:

@@ -10,7 +10,7 @@ from tests.circuit.delivery.one_drive import worst_case
 from tests.circuit.delivery.replay import Held, Player
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Drive, Limits, Rig, gate
-from thermicon.circuit.delivery.deliver import deliver
+from thermicon.circuit.delivery.ways import deliver
 from thermicon.circuit.safety import playmap
 from thermicon.circuit.safety.checks import Before
 from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay

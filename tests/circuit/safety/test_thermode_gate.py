@@ -6,9 +6,9 @@ import pytest
 from tests.circuit.delivery.one_drive import worst_case
 from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Device, Limits, Rig
-from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.setpoints import Setpoints, display_of, lag_of
-from thermicon.circuit.delivery.worstcase import ways_of, worst_cases
+from thermicon.circuit.delivery.ways import deliver, worst_cases
+from thermicon.circuit.delivery.worstcase import ways_of
 from thermicon.circuit.safety.display import DisplayCourse, DisplayPlant
 from thermicon.circuit.safety.gate import Gate, gate_shown
 from thermicon.circuit.safety.plant import left_s, recovery_s

@@ -15,8 +15,8 @@ from tests.circuit.surerig import SURE, sure_rig
 from tests.notebooks.conftest import Cli
 from thermicon.base.words.number_text import number
 from thermicon.circuit import Device, Export, Gate, Rig, export
-from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.pack import pack
+from thermicon.circuit.delivery.ways import deliver
 from thermicon.icons import load_library, parse, read_cue
 from thermicon.notebooks.report.gate_words import gate_words
 from thermicon.notebooks.workbench.view_blocks import delivered_html, gate_html

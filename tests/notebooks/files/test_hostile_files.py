@@ -12,11 +12,11 @@ import pytest
 
 from tests.notebooks.readers import KINDS
 from thermicon.circuit import Device, Rig
-from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import FormatError, c_array, load_format
 from thermicon.circuit.delivery.formats.form import check_name
 from thermicon.circuit.delivery.samples import rate_of
+from thermicon.circuit.delivery.ways import deliver
 from thermicon.circuit.solver.drive import DriveError, read_drive
 from thermicon.icons import CueErrors, load_library, parse
 

@@ -3,7 +3,8 @@
 import pytest
 
 from thermicon.circuit import Device, Rig, simulate
-from thermicon.circuit.delivery.deliver import deliver, traces_until
+from thermicon.circuit.delivery.deliver import traces_until
+from thermicon.circuit.delivery.ways import deliver
 from thermicon.circuit.solver.simulate import duration_s, simulate_all
 from thermicon.icons import parse
 from thermicon.perception import Observer, Ranking, draw_people, perceive, rank

@@ -15,11 +15,11 @@ import pytest
 
 from tests.circuit.delivery.one_drive import changed, icon_of
 from thermicon.circuit import Device, Rig, read_drive, simulate_current
-from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.formats.c_array import identifier
 from thermicon.circuit.delivery.samples import Samples
+from thermicon.circuit.delivery.ways import deliver
 from thermicon.circuit.solver.drive import DriveError
 from thermicon.icons import load_library
 

@@ -16,9 +16,9 @@ import pytest
 from tests.circuit.delivery.one_drive import icon_of, prepare
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Rig
-from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
+from thermicon.circuit.delivery.ways import deliver
 from thermicon.icons import load_library
 
 RIG = Rig.load("thenar")
