@@ -102,12 +102,12 @@ def remembered(judge: Callable[..., Any], folder: Path) -> Callable[..., Any]:
 @pytest.fixture(scope="session", autouse=True)
 def verdicts(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """What exports ask of the safety gate is computed once in a run; tests of the gate itself ask it directly."""
-    from thermicon.circuit.delivery import kinds
+    from thermicon.circuit.delivery import ways
 
     folder = shared_folder(tmp_path_factory) / "verdicts"
     with pytest.MonkeyPatch.context() as patch:
         for name in ("gate_set", "gate_shown", "gate_controlled"):
-            patch.setattr(kinds, name, remembered(getattr(kinds, name), folder / name))
+            patch.setattr(ways, name, remembered(getattr(ways, name), folder / name))
         yield
 
 

@@ -69,11 +69,16 @@ def judge_thermode(deliveries: Deliveries, pause_s: float | None) -> tuple[Gate,
     return gate_shown([ways_of(one) for one in deliveries], rig, stuck_C=stuck_C, pause_s=pause_s)
 
 
+def judge_loop(deliveries: Deliveries, pause_s: float | None) -> tuple[Gate, ...]:
+    """By the display at its set-points, the module that follows, and what any loop around that may do."""
+    return gate_controlled(deliveries, pause_s)
+
+
 WAYS: Mapping[DrivenBy, Way] = {
     "volts": Way(deliver_open, judge_open),
     "amperes": Way(deliver_open, judge_open),
     "duty": Way(deliver_open, judge_bridge),
     "set-points": Way(deliver_setpoints, judge_thermode),
-    "temperatures": Way(deliver_temperatures, gate_controlled),
+    "temperatures": Way(deliver_temperatures, judge_loop),
 }
 """Each by the name of its kind in device files."""
