@@ -20,7 +20,7 @@ FIRST_CELL_M = 25e-6
 CELL_GROWTH = 0.10
 """Cell size at the surface, and its growth per unit depth: fine where the onset is steep, coarse where little changes.
 
-Chosen with `meshstudy` in `docs/explain/source_paper` over two cues, six drives and four skins, not fitted to one:
+Chosen with `meshstudy` in `examples/source-paper` over two cues, six drives and four skins, not fitted to one:
 within 5 mK of a converged mesh at receptor depth on a 6 °C, 3 °C/s cue, and within 20 mK on 20 s drives that swing the
 display by 30 to 50 °C.
 """

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from gallery import png
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "explain"))  # the studies are not installed
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples" / "source-paper"))
 
 CAPTIONS = {
     "figure-3": "Figure 3: the current that makes the step of the skin, and what display and skin then do.",

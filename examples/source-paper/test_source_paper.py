@@ -135,7 +135,7 @@ def test_closely_joined_skin_resembles_its_own_depth() -> None:
         assert like.residual_K < 0.02
 
 
-NOTEBOOK = Path(__file__).resolve().parents[2] / "docs/explain/06_the_papers_figures.ipynb"
+NOTEBOOK = Path(__file__).resolve().parent / "the_papers_figures.ipynb"
 
 
 def test_it_is_thin_and_has_no_outputs() -> None:
