@@ -1,6 +1,7 @@
-"""The path to the studies, which are not installed."""
+"""The path to the studies, which are not installed, and to what tests share."""
 
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[1])]
