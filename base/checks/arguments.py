@@ -15,7 +15,8 @@ from ..words.clean_text import clean
 from ..words.near_words import did_you_mean
 
 F = TypeVar("F", bound=Callable[..., Any])
-RENAMED = {"norm": "memory now", "intervals": "parameters in Python"}
+IN_PYTHON = {"intervals": "parameters"}
+"""Options of the command line that have another name as arguments."""
 LONGEST = 60
 WORDS = {str: "a text", bytes: "bytes", Path: "a path", float: "a number", int: "a whole number",
          bool: "True or False", NoneType: "None", Callable: "a function"}  # fmt: skip
@@ -99,8 +100,9 @@ def checked(function: F) -> F:
         values = [*zip(names, args, strict=False), *((name, each) for name in rest for each in args[len(names) :])]
         for name, value in (*values, *given.items()):
             if name not in hints and name in given:
-                now = f"is called {RENAMED[name]}" if name in RENAMED else did_you_mean(name, hints)
-                raise InputError(f"{place}: {name} {'' if name in RENAMED else 'is not an argument; '}{now}")
+                other = IN_PYTHON.get(name)
+                cure = f"is called {other} in Python" if other else f"is not an argument; {did_you_mean(name, hints)}"
+                raise InputError(f"{place}: {name} {cure}")
             if not _fits(value, hints.get(name, Any)):
                 raise InputError(f"{place}: {name} takes {_words(hints[name])}, {_refused(name, value, hints[name])}")
 

@@ -46,7 +46,6 @@ SENTENCE = 400
 """More letters than any first sentence of a command's help has."""
 UNITS = {"S": " s", "HZ": " Hz", "J": " J", "K": " K", "POINTS": " percentage points", "PERCENT": " %"}
 """Units by the metavar of an option; others have none."""
-RENAMED = {"--norm": "--memory"}
 NUMBERS = {
     "int": "is not a whole number; write one, such as 12",
     "float": "is not a number; write digits with a decimal point and without a unit, such as 2.5",
@@ -117,10 +116,7 @@ class Commands(TyperGroup):
             if isinstance(error, RuntimeError) and "Symlink loop" in str(error):  # pathlib's words, before 3.13
                 fail(f"a path cannot be followed because its links form a circle: {str(error).partition('from ')[2]}")
             in_three_lines(error)
-            if (option := getattr(error, "option_name", None)) in RENAMED:
-                error.message = f"{option} is called {RENAMED[option]} now"  # type: ignore[attr-defined]
-                raise
-            if option in ("-o", "--output") and type(error).__name__ == "NoSuchOption":
+            if getattr(error, "option_name", None) in ("-o", "--output") and type(error).__name__ == "NoSuchOption":
                 error.possibilities = ()  # type: ignore[attr-defined]
                 error.message += outputs_of(error.ctx.command)  # type: ignore[attr-defined]
                 raise

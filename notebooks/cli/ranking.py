@@ -204,8 +204,7 @@ def doubt_about(
     with progress_bar("doubt") as progress:
         found = sensitivity(icons, where, draws=draws, observer=model, progress=progress, **crowd.asked)
     if json is not None:
-        keys = {"norm" if name == "memory" else name: value for name, value in asdict(found).items()}
-        write_text(dumps(keys, ensure_ascii=False, indent=1) + "\n", json)
+        write_text(dumps(asdict(found), ensure_ascii=False, indent=1) + "\n", json)
     figure.write(lambda: found.plot().figure)
     if json != STDOUT:
         show(doubt_report(found, icons.title))

@@ -6,7 +6,6 @@ import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from ..observer.channels import VARIABLES
 from .predicted import Predicted
 from .results import PredictedRow, judging_predictions, load_predictions, median_half_width
 from .rows import load_evidence
@@ -21,7 +20,6 @@ def report_file(report: ValidationReport) -> dict[str, Any]:
     evidence = report.evidence
     return {
         **_data(report, "people", "draws", "seed", "trials", thermicon="version"),
-        "variants": [{"name": variable, "variable": variable} for variable in VARIABLES],
         "targets": [
             {
                 **_data(section.target, "number", "title", "asks", "source", mechanism_suspected="mechanism"),

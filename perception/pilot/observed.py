@@ -100,7 +100,7 @@ class Observed(Drawn, Tabled, Generic[D, F]):
             "version": self.version,
             "rig": self.rig,
             "rig_changes": list(self.rig_changes),
-            "norm": self.memory,
+            "memory": self.memory,
             "seed": self.seed,
             **self.data.to_dict(),
             "fit_before": _plain(self.fit),

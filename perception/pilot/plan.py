@@ -100,7 +100,7 @@ class ExperimentPlan(Tabled):
             "version": self.version,
             "rig": self.rig,
             "rig_changes": list(self.rig_changes),
-            "norm": self.memory,
+            "memory": self.memory,
             "seed": self.seed,
             "draws": self.draws,
             "sets": [asdict(each) for each in self.predictions],

@@ -61,7 +61,7 @@ def ranking_file(ranking: Ranking) -> dict[str, Any]:
             "people": ranking.people,
             "tracking": ranking.tracking,
             "by": "model",
-            "norm": ranking.memory,
+            "memory": ranking.memory,
             "content_hash": ranking.content_hash,
             "sha256": ranking.digests,
             "task": {"gap_s": ranking.task.gap_s},

@@ -44,7 +44,7 @@ def test_the_json_has_the_promised_keys_and_the_details_its_numbers(cli: Cli, tw
     assert "NaN" not in text and "Infinity" not in text
     ranked = json.loads(text)
     assert set(ranked) >= TOP
-    assert (ranked["rig"], ranked["seed"], ranked["people"], ranked["norm"]) == ("thenar", 3, 8, "episodes")
+    assert (ranked["rig"], ranked["seed"], ranked["people"], ranked["memory"]) == ("thenar", 3, 8, "episodes")
     assert ranked["tracking"] == "display"  # what control display asks for
     for icon in ranked["icons"]:
         assert set(icon) >= ICON

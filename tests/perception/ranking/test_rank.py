@@ -224,7 +224,7 @@ def test_rules_use_no_number_of_the_model() -> None:
 
 def test_messages() -> None:
     for told, said in (
-        ({"norm": "naming"}, "rank: norm is called memory now"),
+        ({"intervals": 8}, "rank: intervals is called parameters in Python"),
         ({"workers": 0}, "at least one worker is needed, not 0"),
         ({"people": 0}, "at least one person is needed, not 0"),
     ):
