@@ -19,7 +19,7 @@ from thermicon.perception.observer.observer import DATA
 
 Cli = Callable[..., Any]
 PROMISED = {
-    "top": "thermicon rig rig_changes seed people tracking by norm content_hash icons pairs confusion set chosen",
+    "top": "thermicon rig rig_changes seed people tracking by memory content_hash icons pairs confusion set chosen",
     "icon": "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s proportion_correct "
     "reachable safe reason cautions rules rules_score outside_data",
     "pair": "a b d_prime confused_probability why rules edit distinguishable_by_rules",

@@ -14,7 +14,7 @@ from thermicon.perception.plots.draw_heat import plot_distance
 from thermicon.perception.ranking import batches, scores
 
 TOP = (
-    "thermicon rig rig_changes rig_text observer warnings seed people tracking by norm content_hash sha256 task icons "
+    "thermicon rig rig_changes rig_text observer warnings seed people tracking by memory content_hash sha256 task icons "
     "pairs confusion set persons assumptions goal chosen map"
 )
 ICON = (
