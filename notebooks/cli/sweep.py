@@ -15,6 +15,7 @@ from thermicon.perception.ranking.swept import AGE, ALL, MEASURES, OF_95, SITE
 
 from ..files.outputs import TRACE_SUFFIXES, check_output, check_separate
 from ..messages import Progress, fail, note, progress_bar, usage
+from ..report.following import after_sweep
 from ..report.run_report import sweep_lines, sweep_report
 from ..report.terminal import show
 from .options import (
@@ -246,8 +247,8 @@ def sweep_command(
     if output is not None:
         write_frame(frame, output)
     elif what:
-        again = command_text([file], rig, paths=True) + f" --set {key}=VALUE" * (key not in (SITE, AGE))
-        show([*sweep_report(frame, key, what), f"Next: {again}, with a value that helps"])
+        following = after_sweep(frame, key, what[0], command_text([file], rig, paths=True))
+        show([*sweep_report(frame, key, what), f"Next: {following}"])
 
 
 def read_measures(text: str, intervals: int) -> tuple[str, ...]:

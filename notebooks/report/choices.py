@@ -42,7 +42,7 @@ def goal_lines(goal: GoalResult, verdict: str = "", ways: Sequence[Way] = ()) ->
     for way in (ways[k] for k in sorted(nearest)):
         after, which = way.after(worst), f"{word_of(worst.part.quantity)}{worst.part.whose}"
         met = "which meets the goal" if way.result.met else "which misses the goal"
-        yield f"  Tried: {way_words(way)}: {which} {_said(worst)} → {_said(after)}, {met}"
+        yield f"  Tried: {way_words(way)}: {which} {_said(worst)} → {'about ' * way.rough}{_said(after)}, {met}"
     if goal.unreached:
         yield f"  Not reached, and judged as the rig would play them: {', '.join(goal.unreached)}; export refuses them"
 

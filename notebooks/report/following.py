@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from thermicon.base.words.number_text import listed
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from thermicon.perception import Goal
     from thermicon.perception.selection.advice import Way
     from thermicon.perception.selection.frontier import Frontier
@@ -50,6 +52,22 @@ def after_simulating(cured: list[str], lost: list[str], command: Command) -> str
         return command("rank")
     way = f"change the lines of {listed(cured)} as said above" if cured else f"write {listed(lost)} slower or smaller"
     return f"{way}, then {command('rank')}"
+
+
+def after_sweep(frame: pd.DataFrame, key: str, quantity: str, rank: str) -> str:
+    """To rank at the value where people do best, if they feel every icon there."""
+    from thermicon.perception.criteria import FELT_FROM
+    from thermicon.perception.ranking.swept import AGE, MEASURES, SITE
+
+    column = MEASURES[quantity][0]
+    means = frame.groupby(key)[column].mean().dropna()
+    if means.empty or key == AGE:
+        return rank
+    best = means.idxmin() if quantity == "onset" else means.idxmax()
+    shares = frame[frame[key] == best].set_index("icon")[column].dropna()
+    if quantity == "detected" and shares.min() < FELT_FROM:
+        return f"no value here lets people feel {shares.idxmin()}: write it larger, then {rank}"
+    return f"{rank} --rig {best}" if key == SITE else f"{rank} --set {key}={best:g}"
 
 
 def after_choices(found: Frontier, command: Command, written: str | None, way: Way | None = None) -> str:

@@ -50,7 +50,9 @@ class SetReport:
         made["warnings"] = list(self.warnings)
         made["goal"] = None if self.goal is None else plain(self.goal.to_dict())
         if self.ways:
-            made["goal"]["tried"] = [{"way": way_words(way), **plain(way.result.to_dict())} for way in self.ways]
+            made["goal"]["tried"] = [
+                {"way": way_words(way), "rough": way.rough, **plain(way.result.to_dict())} for way in self.ways
+            ]
         made["chosen"] = None if self.choice is None else plain(self.choice.to_dict())
         for pair in made["pairs"]:
             edit = self.edits.get((pair["a"], pair["b"]))

@@ -43,10 +43,11 @@ MOST_PAIRS = 6
 @dataclass(frozen=True, slots=True)
 class Way:
     """A change that was tried: `edits`, a `choice` of fewer icons, `must` among them, or a contact of `area_cm2`; and
-    the goal with it.
+    the goal with it. A `rough` one was left at what a few people and draws find, since it is far from the goal.
     """
 
     result: GoalResult
+    rough: bool = False
     edits: tuple[Edit, ...] = ()
     choice: Choice | None = None
     area_cm2: float | None = None
@@ -101,12 +102,12 @@ def ways_to(
     choice: Choice | None = None,
     must: tuple[str, ...] = (),
 ) -> Iterator[Way]:
-    """Try ways to a goal that the set, or a choice out of it, misses, the cheapest first, if there is hope."""
+    """Try ways to a goal that the set, or a choice out of it, misses, the cheapest first."""
     job, goal = ranking.job, missed.goal
     if choice is None and all(icon.playable for icon in ranking.icons) and _felt(missed):
         for some in _edits(ranking, missed, edits):
-            if (result := _judged(job, ranking.crowd, with_edits(job.icons, some), goal, draws)) is not None:
-                yield Way(result, edits=some)
+            if (found := _judged(job, ranking.crowd, with_edits(job.icons, some), goal, draws)) is not None:
+                yield replace(found, edits=some)
     if _wrong(missed) != {"count"}:
         yield from _fewer(ranking, goal, draws, len(ranking.icons) if choice is None else len(choice.icons), must)
     names = ranking.labels if choice is None else choice.icons
@@ -141,18 +142,21 @@ def contacts_to(job: Job, crowd: Crowd, icons: Sequence[Icon], missed: GoalResul
             larger = job.rig.with_(**{"contact.area_cm2": area})
         except ValueError:
             return
-        if (result := _judged(job, crowd, icons, missed.goal, draws, larger)) is not None:
-            yield Way(result, area_cm2=area)
+        if (found := _judged(job, crowd, icons, missed.goal, draws, larger)) is not None:
+            yield replace(found, area_cm2=area)
 
 
 def _judged(
     job: Job, crowd: Crowd, icons: Sequence[Icon], goal: Goal, draws: int, rig: Rig | None = None
-) -> GoalResult | None:
-    """How icons meet a goal; None where they cannot be played, or a few people and draws find them far from it."""
+) -> Way | None:
+    """How icons meet a goal, roughly where a few people find them far from it; None: they cannot be played."""
     few = ranked_as(job, crowd.but(people=min(crowd.people, FEW)), icons, min(draws, FEW), rig)
-    if not all(icon.playable for icon in few.icons) or judge_goal(goal, few).margin < HOPELESS:
+    if not all(icon.playable for icon in few.icons):
         return None
-    return judge_goal(goal, ranked_as(job, crowd, icons, draws, rig))
+    rough = judge_goal(goal, few)
+    if rough.margin < HOPELESS:
+        return Way(rough, rough=True)
+    return Way(judge_goal(goal, ranked_as(job, crowd, icons, draws, rig)))
 
 
 def _wrong(missed: GoalResult) -> set[str]:

@@ -1,10 +1,13 @@
 """What a report proposes was tried: the goal's number after it is what a ranking then says."""
 
+import json
 import re
 import shlex
 from pathlib import Path
 
 import pytest
+
+from thermicon.notebooks.report.choices import MOST_WAYS
 
 from ..conftest import Cli
 
@@ -33,7 +36,7 @@ def said_next(text: str) -> list[str]:
 
 def numbers(text: str) -> list[tuple[float, float, str]]:
     """Before, after and verdict of every way that was tried."""
-    lines = re.findall(r"Tried: .*?([\d.]+) % → ([\d.]+) %, which (meets|misses)", " ".join(text.split()))
+    lines = re.findall(r"Tried: .*?([\d.]+) % → (?:about )?([\d.]+) %, which (meets|misses)", " ".join(text.split()))
     return [(float(before), float(after), verdict) for before, after, verdict in lines]
 
 
@@ -57,12 +60,13 @@ def test_next_takes_the_cheapest_way_that_meets_the_goal_with_the_number_that_wa
 
 
 def test_where_nothing_that_was_tried_meets_the_goal_the_report_says_so(cli: Cli, close: str) -> None:
-    said = cli.good("rank", close, *FEW, "--goal", WANTED.format(99.9)).stdout
-    ways = numbers(said)
-    assert {verdict for _, _, verdict in ways} == {"misses"}
-    words = " ".join(said.split())
-    for kind in ("Tried: in ", "Tried: the best 2, ", "Tried: a contact of 18 cm²"):
-        assert kind in words
+    said = cli.good("rank", close, *FEW, "--goal", WANTED.format(99.9), "--json", "all.json").stdout
+    ways, words = numbers(said), " ".join(said.split())
+    assert [verdict for _, _, verdict in ways] == ["misses"] * MOST_WAYS
+    tried = [each["way"] for each in json.loads(Path("all.json").read_text("utf-8"))["goal"]["tried"]]
+    for kind in ("in ", "the best 2, ", "a contact of 18 cm²"):
+        assert any(way.startswith(kind) for way in tried)
+    assert f"farther from the goal: {len(tried) - MOST_WAYS} other way" in words
     assert "Nothing that was tried meets the goal." in words and "would help" not in words
 
 

@@ -52,7 +52,7 @@ def test_every_next_ends_at_an_export_or_a_reason(
         if said.exit_code:
             assert words[0] == "export" and "refused" in said.stderr, (words, said.stderr)
             return
-        after = re.search(r"Next: ((?:.+\n)+?)(?:\n|$)", said.stdout + said.stderr + "\n")
+        after = re.search(r"Next: ((?:.+\n)+?)(?:\n|$)", f"{said.stdout}\n{said.stderr}\n")
         if after is None:
             assert words[0] == "export", (words, said.stdout)
             return
