@@ -97,7 +97,7 @@ def main() -> None:
     report("words of docs", words_of_docs(), BUDGET["docs_words"])
     for name in SCRIPTS:
         report(f"modules entered: {name}", len(modules_entered(name)), BUDGET["journeys"][name])
-    for package in ("base", "icons", "circuit", "perception", "notebooks"):
+    for package in ("icons", "circuit", "perception", "notebooks"):
         print(f"{len(import_module(f'thermicon.{package}').__all__):10}  names in thermicon.{package}")
     for name, command in get_command(app).commands.items():
         print(f"{sum(one.opts[0].startswith('-') for one in command.params):10}  options of {name}")

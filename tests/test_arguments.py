@@ -80,7 +80,7 @@ def test_a_wrong_argument_works_or_is_an_error_for_people(function: str, argumen
     [
         ('simulate("six-icons")', "simulate: icon takes an Icon such as load_library.*, not 'six-icons'$"),
         ("rank(WRONG[-2])", "rank: icons takes an IconSet .*, a name or a path, not a DataFrame$"),
-        ('rank("six-icons", norm="naming")', "rank: norm is called memory now$"),
+        ('rank("six-icons", intervals=8)', "rank: intervals is called parameters in Python$"),
         ('rank("six-icons", peple=3)', r"rank: peple is not an argument; did you mean people\?$"),
         ('rank("six-icons", "thenr")', r"thenr: no such rig; did you mean thenar\?$"),
         ('Icon.of("a", cool(by=4, at=2), control="skni")', "control takes 'skin', 'display' or 'current', not 'skni'"),

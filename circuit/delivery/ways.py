@@ -26,7 +26,7 @@ RIPPLES_BELOW_HZ = 100.0
 Deliveries = Sequence[DeliveredDrive]
 
 
-class Way(NamedTuple):
+class Handling(NamedTuple):
     """How a kind delivers a cue with a time in s after it, and how its deliveries on one rig are judged.
 
     They may be played repeatedly in any order, with a pause in s or after whatever pause is found.
@@ -74,11 +74,11 @@ def judge_loop(deliveries: Deliveries, pause_s: float | None) -> tuple[Gate, ...
     return gate_controlled(deliveries, pause_s)
 
 
-WAYS: Mapping[DrivenBy, Way] = {
-    "volts": Way(deliver_open, judge_open),
-    "amperes": Way(deliver_open, judge_open),
-    "duty": Way(deliver_open, judge_bridge),
-    "set-points": Way(deliver_setpoints, judge_thermode),
-    "temperatures": Way(deliver_temperatures, judge_loop),
+WAYS: Mapping[DrivenBy, Handling] = {
+    "volts": Handling(deliver_open, judge_open),
+    "amperes": Handling(deliver_open, judge_open),
+    "duty": Handling(deliver_open, judge_bridge),
+    "set-points": Handling(deliver_setpoints, judge_thermode),
+    "temperatures": Handling(deliver_temperatures, judge_loop),
 }
 """Each by the name of its kind in device files."""

@@ -15,8 +15,8 @@ from thermicon.base.checks.arguments import advised
 from thermicon.base.files.atomic import OutputError
 from thermicon.base.words.number_text import number
 from thermicon.circuit.delivery.export_folder import before_of, check_export_folder
+from thermicon.perception.identification.exported import felt_in, others
 
-from ..files.exporting import felt_in, others
 from ..loading import DEFAULT_RIG
 from ..messages import BAD_INPUT, OPTIONS, REFUSED, MissingArgument, note, progress_bar, usage
 from ..report.blocks import grid

@@ -17,7 +17,7 @@ from ..messages import bars_aside, fail, note, progress_bar, shown_at_once, usag
 from ..report.following import Command, after_choice, after_choices, after_searching, largest
 from ..report.improve_report import edits_report, frontier_report, search_report
 from ..report.rank_report import rank_report
-from ..report.set_report import SetReport, cures, report_of
+from ..report.set_report import SetReport, chosen, cures, objective_of
 from ..report.terminal import show
 from .options import (
     CrowdOptions,
@@ -38,7 +38,7 @@ from .options import (
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
-    from thermicon.perception import Goal, Ranking
+    from thermicon.perception import Ranking
     from thermicon.perception.observer.observer_model import Crowd
     from thermicon.perception.ranking.batches import Job
     from thermicon.perception.selection.advice import Way
@@ -241,37 +241,6 @@ def _roughly(icons: IconSet, rig: Rig, how: dict[str, Any]) -> str:
     found = appraise(icons, rig, people=PEOPLE, **crowd)
     named = f"{percent(found.felt_and_named)} felt and named, worst pair d′ {number(found.d_prime)}"
     return f"{', '.join(icon.name for icon in icons)}: {named}, for {PEOPLE} people"
-
-
-def objective_of(goal: Goal | None) -> Objective:
-    """The objective of a goal: the worst pair, unless it is about what is felt and named, named, or bits."""
-    return "worst" if goal is None else goal.objective
-
-
-def chosen(
-    icons: IconSet,
-    rig: Rig,
-    count: int | None,
-    objective: Objective,
-    must: Sequence[str] | None,
-    edits: bool,
-    how: dict[str, Any],
-) -> SetReport:
-    """Choose the best few icons as they are, or edit them; judge them by a goal."""
-    from thermicon.perception.selection.request import Selection
-
-    goal: Goal | None = how["goal"]
-    limits = (None, None) if goal is None else (goal.of("time"), goal.of("energy"))
-    return report_of(
-        icons,
-        rig,
-        how.pop("parameters"),
-        edits="all" if edits or (count is None and goal is None) else "worst" if count is None else "none",
-        make_edits=count is None,
-        choosing=None if count is None else Selection(count, objective, tuple(must or ()), *limits),
-        warnings=tuple(rig.warnings),
-        **how,
-    )
 
 
 def _best_of(found: Frontier, icons: IconSet, rig: Rig) -> IconSet | None:

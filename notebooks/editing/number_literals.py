@@ -160,7 +160,7 @@ def with_edit(text: str, edited: Icon, old: str, new: str) -> str:
     family writes the icon, or where the edit is more than one number or repeat.
 
     >>> from thermicon.icons import parse
-    >>> from thermicon.perception.selection.candidate_edits import numbers_of, with_number
+    >>> from thermicon.icons.model.changes import numbers_of, with_number
     >>> text = "cue 1\\nicon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s } # deep"
     >>> icon = parse(text)["dip"]
     >>> with_edit(text, with_number(icon, numbers_of(icon, 32.0)[0], 6.5), "cool by 6 …", "cool by 6.5 …")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from thermicon.perception.selection.choose import Choice
     from thermicon.perception.selection.edit import Edit, NoEdit
     from thermicon.perception.selection.goal_result import GoalResult
-    from thermicon.perception.selection.request import Selection
+    from thermicon.perception.selection.request import Objective, Selection
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +118,37 @@ def report_of(
     if make_edits and (some := made.way.edits if made.way else compatible(list(found.values()))):
         after = ranked_as(ranking.job, ranking.crowd, with_edits(ranking.job.icons, some), draws if goal else 0)
     return replace(made, edited=after)
+
+
+def objective_of(goal: Goal | None) -> Objective:
+    """The objective of a goal: the worst pair, unless it is about what is felt and named, named, or bits."""
+    return "worst" if goal is None else goal.objective
+
+
+def chosen(
+    icons: IconSet,
+    rig: Rig,
+    count: int | None,
+    objective: Objective,
+    must: Sequence[str] | None,
+    edits: bool,
+    how: dict[str, Any],
+) -> SetReport:
+    """Choose the best few icons as they are, or edit them; judge them by a goal."""
+    from thermicon.perception.selection.request import Selection
+
+    goal: Goal | None = how["goal"]
+    limits = (None, None) if goal is None else (goal.of("time"), goal.of("energy"))
+    return report_of(
+        icons,
+        rig,
+        how.pop("parameters"),
+        edits="all" if edits or (count is None and goal is None) else "worst" if count is None else "none",
+        make_edits=count is None,
+        choosing=None if count is None else Selection(count, objective, tuple(must or ()), *limits),
+        warnings=tuple(rig.warnings),
+        **how,
+    )
 
 
 def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:

@@ -14,8 +14,8 @@ from thermicon.circuit.safety.exposure import cem43_min
 from thermicon.circuit.safety.playmap import UnjudgedError
 from thermicon.circuit.safety.sessionplay import WorstCase, drive_of, worst_case_of
 from thermicon.icons import Icon
+from thermicon.perception.identification.exported import felt_in
 
-from ..files.exporting import felt_in
 from .schedule import Schedule
 from .study_file import Study, StudyError
 from .timing import Gap

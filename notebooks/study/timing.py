@@ -8,11 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.base.numbers.arrays import Array
-from thermicon.circuit import Drive, Rig, design, simulate_current
-from thermicon.circuit.solver.inverse import baseline_C
-from thermicon.circuit.solver.modes import FELT, modes_of
-from thermicon.circuit.solver.network import SKIN
+from thermicon.circuit import Rig
+from thermicon.circuit.solver.settling import LONGEST_S, settling
 from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import Icon
 from thermicon.perception.identification.carry_over import carry_over
@@ -24,9 +21,6 @@ from .study_file import StudyError, Timing
 
 GAPS_S = (0.0, 5.0, 10.0, 15.0, *np.arange(20.0, 121.0, 10.0).tolist(), 150.0, 180.0, 240.0, 300.0, 420.0, 600.0)
 """Gaps tried, the longest first: what is left behind may rise before it falls, when after-sensations come late."""
-
-LONGEST_LANDING_S = 1800.0
-"""A hand that has not settled by then has no landing: the study is refused."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,39 +119,8 @@ def find_landing(icon: Icon, rig: Rig, timing: Timing, held: bool) -> Landing:
         if len(late) and late[-1] + 1 == len(away):
             raise StudyError(
                 f"timing.landing_within_K = {timing.landing_within_K:g} K: skin that arrives {timing.landing_from_K:g} "
-                f"K away is still {away[-1]:.2g} K off after {LONGEST_LANDING_S:g} s; allow more, or give landing_s"
+                f"K away is still {away[-1]:.2g} K off after {LONGEST_S:g} s; allow more, or give landing_s"
             )
         seconds = float(times[late[-1] + 1]) if len(late) else 0.0
     left, early = (float(np.interp(at, times, away)) for at in (seconds, 10.0))
     return Landing(seconds, timing.landing_s is None, timing.landing_from_K, left, early)
-
-
-def settling(icon: Icon, rig: Rig, from_K: float, held: bool) -> tuple[Array, Array]:
-    """Seconds after contact, and the largest deviation of skin and receptors in K from where they settle.
-
-    Skin arrives `from_K` warmer or colder than it rests; the display stays at baseline (`held`), or the current does.
-    """
-    modes = modes_of(rig)
-    columns = ("skin_C", "cold_receptor_C", "warm_receptor_C")
-    times = np.arange(LONGEST_LANDING_S + 1.0)
-    base = baseline_C(icon, rig)
-    deviations = []
-    for arrived_C in (rig.skin.rest_C - from_K, rig.skin.rest_C + from_K):
-        begun = modes.steady(modes.display_holding_skin_C(arrived_C))
-        if held:
-            display = modes.display_holding_skin_C(base) if icon.context.control == "skin" else base
-            run = modes.relax(times, display, begun)
-            steady = modes.relax(times[:1], display, modes.steady(display))
-            places = [FELT.index(name) for name in columns]
-            deviations.append(np.abs(run[places] - steady[places]).max(axis=0))
-            continue
-        plan = design(icon, rig, duration_s(icon, rig))
-        start = plan.start_C.copy()
-        start[SKIN:-1] = modes.lumps @ begun + modes.deep_C
-        drive = Drive([0.0, LONGEST_LANDING_S], [plan.rest_A, plan.rest_A], held=True)
-        trace = simulate_current(drive, rig, rate_Hz=1.0, start_C=start)
-        still = simulate_current(
-            Drive([0.0, 1.0], [plan.rest_A] * 2, held=True), rig, rate_Hz=1.0, start_C=plan.start_C
-        )
-        deviations.append(np.max([np.abs(getattr(trace, name) - getattr(still, name)[0]) for name in columns], axis=0))
-    return times, np.asarray(np.max(deviations, axis=0))

@@ -9,10 +9,10 @@ from typing import Any
 
 from thermicon.base.words.number_text import number
 from thermicon.icons import CueErrors, Icon
+from thermicon.icons.model.changes import with_values
 from thermicon.icons.model.motion import periods_of
 from thermicon.icons.model.parameter import Path
 from thermicon.icons.model.statements import Wave
-from thermicon.perception.selection.candidate_edits import with_values
 
 from ..editing.cue_check import read_text
 from ..editing.number_literals import Amount, WrittenStatement, keyword_of, kind_of, replaced, written

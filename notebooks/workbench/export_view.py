@@ -15,11 +15,11 @@ from thermicon.base.files.read_limited import NotRegular, TooLarge, read_limited
 from thermicon.circuit import Device, Export, Rig, export
 from thermicon.circuit.delivery.device import device_names
 from thermicon.circuit.delivery.formats import format_names, load_format
+from thermicon.perception.identification.exported import felt_in, others
 
 from ..editing.cue_check import read_text
 from ..figures.compare_figure import export_figure
 from ..figures.print_figure import themed_svg
-from ..files.exporting import felt_in, others
 from ..report.blocks import fragment
 from .design_model import DesignModel
 from .live_view import BackgroundJob, LiveView

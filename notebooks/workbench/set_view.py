@@ -144,7 +144,7 @@ class SetView(LiveView[SetRequest]):
         self.chooser.ask(lambda job: self._choose(job, text, rig, count, goal))
 
     def _choose(self, job: BackgroundJob, text: str, rig: Rig, count: int, goal: str) -> None:
-        from ..cli.improve import chosen, objective_of
+        from ..report.set_report import chosen, objective_of
 
         icons, model, wanted = read_text(text).icons, self.design.model, Goal.parse(goal) if goal else None
         assert icons is not None

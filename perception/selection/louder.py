@@ -8,11 +8,12 @@ import numpy as np
 
 from thermicon.circuit.solver.inverse import baseline_C
 from thermicon.icons import parse
+from thermicon.icons.model.changes import numbers_of
 from thermicon.icons.model.played import all_played
 
 from ..ranking.ranking import Ranking
 from ..ranking.scores import objection
-from .candidate_edits import changed, numbers_of
+from .candidate_edits import changed
 from .edit import Edit
 from .pool import Pool
 

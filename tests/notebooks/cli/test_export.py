@@ -171,7 +171,7 @@ def test_another_icon_that_the_device_cannot_play_is_left_out_of_the_comparison(
 def test_very_many_icons_are_not_compared_with_each_other(
     cli: Cli, two: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("thermicon.notebooks.files.exporting.MOST_COMPARED", 1)
+    monkeypatch.setattr("thermicon.perception.identification.exported.MOST_COMPARED", 1)
     said = cli.good("export", two, "--to", "tcs2-serial", "-o", tmp_path / "out", *SURE)
     assert "warning: 2 icons are too many to compare" in said.stderr
     assert json.loads((tmp_path / "out" / "cool-step.json").read_text())["perception"]["d_prime"] == {}

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Device, Rig
+from thermicon.circuit.solver.settling import settling
 from thermicon.icons import load_library, parse
 from thermicon.notebooks.study.schedule import Pace, Schedule, Trial, planned_plays
 from thermicon.notebooks.study.study_file import StudyError, Timing
@@ -12,7 +13,6 @@ from thermicon.notebooks.study.timing import (
     carried_over,
     find_gap,
     find_landing,
-    settling,
     shortest_gap_s,
 )
 

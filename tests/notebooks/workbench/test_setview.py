@@ -11,15 +11,15 @@ from tests.builders import few_draws, missing
 from tests.notebooks.workbench.openbench import SAID, wait
 from thermicon.circuit import Rig
 from thermicon.icons import parse
+from thermicon.icons.model.changes import numbers_of, repeated, with_number
 from thermicon.notebooks import Workbench
-from thermicon.notebooks.cli.improve import chosen
 from thermicon.notebooks.editing.number_literals import CannotEdit, with_edit
+from thermicon.notebooks.report.set_report import chosen
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.live_view import BackgroundJob, BackgroundWorker, Superseded
 from thermicon.notebooks.workbench.set_model import RankedSet, overlay_frame, rank_set
 from thermicon.notebooks.workbench.set_view import SetView
 from thermicon.perception.observer.observer_model import ObserverModel
-from thermicon.perception.selection.candidate_edits import numbers_of, repeated, with_number
 
 TWO = """cue 1
 

@@ -14,8 +14,8 @@ from thermicon.perception.plots.draw_heat import plot_distance
 from thermicon.perception.ranking import batches, scores
 
 TOP = (
-    "thermicon rig rig_changes rig_text observer warnings seed people tracking by memory content_hash sha256 task icons "
-    "pairs confusion set persons assumptions goal chosen map"
+    "thermicon rig rig_changes rig_text observer warnings seed people tracking by memory content_hash sha256 task "
+    "icons pairs confusion set persons assumptions goal chosen map"
 )
 ICON = (
     "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s felt_and_named proportion_correct "

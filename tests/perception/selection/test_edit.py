@@ -9,10 +9,11 @@ from thermicon.circuit import Rig, simulate
 from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import Icon, IconSet, parse
+from thermicon.icons.model.changes import numbers_of, repeated, with_number
 from thermicon.perception import cheapest_edit, draw_people, rank
 from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
 from thermicon.perception.selection import candidate_edits
-from thermicon.perception.selection.candidate_edits import numbers_of, repeated, with_number, worse
+from thermicon.perception.selection.candidate_edits import worse
 from thermicon.perception.selection.edit import Edit, NoEdit
 
 PEOPLE, WANTED = 40, 1.3 * DISTINGUISHABLE_DPRIME

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from thermicon.circuit.delivery.prepare import Prepared
     from thermicon.icons import Icon
-    from thermicon.perception.identification.delivered import DeliveredChange, PerceivedChange
+
+    from .delivered import DeliveredChange, PerceivedChange
 
 MOST_COMPARED = 60
 """In a larger set, d′ is computed only among the exported icons; beyond this number, not at all."""
@@ -37,8 +38,9 @@ def felt_in(
     from thermicon.circuit.delivery.deliver import traces_until
     from thermicon.circuit.delivery.ways import deliver
     from thermicon.circuit.solver.simulate import duration_s
-    from thermicon.perception.identification.delivered import PEOPLE, detected_as_delivered, judge_delivered
-    from thermicon.perception.identification.population import TAIL_S, run_end_s
+
+    from .delivered import PEOPLE, detected_as_delivered, judge_delivered
+    from .population import TAIL_S, run_end_s
 
     everyone = [one.delivery for one in ready]
     rig, device = everyone[0].rig, everyone[0].device
