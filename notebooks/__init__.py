@@ -1,4 +1,4 @@
-"""thermicon.notebooks: command line, reports, figures, studies, workbench."""
+"""thermicon.notebooks: the work of people with icons at a terminal or in a notebook."""
 
 from .startup import guard
 

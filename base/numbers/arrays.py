@@ -1,4 +1,4 @@
-"""Arrays: the names of their types, read-only copies, the form that kernels take."""
+"""Forms of arrays in which results hold them and kernels take them."""
 
 import numpy as np
 import numpy.typing as npt

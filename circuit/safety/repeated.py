@@ -1,4 +1,4 @@
-"""Repeated plays: their verdict, their shortest safe pause."""
+"""The verdict on repeated plays."""
 
 import math
 from bisect import bisect_left

@@ -1,4 +1,4 @@
-"""Tables of the sampled posterior as Markdown: constants, left-out predictions, variants.
+"""Tables of the sampled posterior as Markdown.
 
 The last two, and scores of forms of memory, are finished comparisons: tables that say by which version they were made.
 """

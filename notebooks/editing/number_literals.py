@@ -1,4 +1,4 @@
-"""Numbers in the text of a statement, rewritten in place in their own unit."""
+"""Numbers in a statement's text and their replacement in place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The comparison of delivered with designed icons as people feel them, passed to every export."""
+"""The perceived difference of delivered icons as every export reports it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The picture of a result, chosen by its type."""
+"""The picture of a result by its type."""
 
 from __future__ import annotations
 
