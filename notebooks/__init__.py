@@ -1,4 +1,4 @@
-"""thermicon.notebooks: the work of people with icons at a terminal or in a notebook."""
+"""thermicon.notebooks: the command line and the workbench."""
 
 from .startup import guard
 

@@ -1,4 +1,4 @@
-"""Forms of arrays in which results hold them and kernels take them."""
+"""The forms of arrays that results hold and kernels take."""
 
 import numpy as np
 import numpy.typing as npt

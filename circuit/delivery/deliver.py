@@ -1,4 +1,4 @@
-"""Delivery of a cue by a device that nothing corrects or by a thermode.
+"""Delivery of a cue by a device.
 
 A file of samples begins and ends at rest: its first update (`lead_s`) holds the baseline, its last row marks the end.
 """

@@ -1,4 +1,4 @@
-"""The verdict on repeated plays."""
+"""Repeated plays and their shortest safe pause."""
 
 import math
 from bisect import bisect_left

@@ -1,4 +1,4 @@
-"""The plan of a session."""
+"""The plan of a session: the order of play with its gap."""
 
 from __future__ import annotations
 

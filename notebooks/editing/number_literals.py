@@ -1,4 +1,4 @@
-"""Numbers in a statement's text and their replacement in place."""
+"""Numbers in the text of a statement and their change in place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The perceived difference of delivered icons as every export reports it."""
+"""The perception of delivered beside designed icons for the sidecars of an export."""
 
 from __future__ import annotations
 

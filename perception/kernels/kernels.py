@@ -1,4 +1,4 @@
-"""Compiled recursions of the chain from receptor temperature to sensation.
+"""Compiled recursions of the chain from receptor temperature to answers.
 
 Every kernel runs over rows independently, so that splitting rows over threads changes no bit.
 
