@@ -1,4 +1,4 @@
-"""The lowest version that pyproject.toml allows of every requirement, one pin per line, for pip.
+"""The lowest version of every requirement that pyproject.toml allows.
 
 ``pip install -r <(python .ci/lowest.py) -e .`` builds the oldest environment that the project promises to work in.
 """

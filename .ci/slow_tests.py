@@ -1,4 +1,4 @@
-"""The tests whose slow part a change calls for, one path per line.
+"""The tests whose slow part a change calls for.
 
 ``.ci/slow_tests.py`` compares with the commit before the change, and takes all files where that is not known;
 ``.ci/slow_tests.py FILE ...`` takes a list of changed files instead. A changed room calls for its tests, what archives

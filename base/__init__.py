@@ -1,1 +1,1 @@
-"""The ground floor: modules that all packages use, and that know none of them."""
+"""The ground floor: modules that all packages use."""

@@ -1,4 +1,4 @@
-"""thermicon.icons: cue text, code or recording → icon → corner points.
+"""thermicon.icons: cue text or recording → icon → corner points.
 
 The names stand in the order of the flow in `__init__.pyi`; nothing heavier than the standard library is imported before
 it is used.

@@ -1,4 +1,4 @@
-"""thermicon.notebooks: command line, reports, figures, studies, workbench."""
+"""thermicon.notebooks: the command line and the workbench."""
 
 from .startup import guard
 

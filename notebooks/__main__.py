@@ -1,4 +1,4 @@
-"""The command line, as ``python -m thermicon.notebooks``."""
+"""The command line as ``python -m thermicon.notebooks``."""
 
 from .cli.main import main
 

@@ -1,4 +1,4 @@
-"""What the options of a command name: its rig, its observer."""
+"""The rig and the observer that the options of a command name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Start of the command, without a traceback for Ctrl-C or a missing library."""
+"""Start of the command without a traceback."""
 
 import os
 import sys

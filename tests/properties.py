@@ -1,4 +1,4 @@
-"""Properties of any input: few examples in the ordinary suite, all in the slow one."""
+"""Properties of any input with few examples in the ordinary suite and all in the slow one."""
 
 from collections.abc import Callable
 from typing import Any

@@ -1,4 +1,4 @@
-"""The scripts of ``.ci``, the ordinary browser tests, the paths in CONTRIBUTING."""
+"""The scripts and workflows of continuous integration."""
 
 import re
 import signal

@@ -1,4 +1,4 @@
-"""Sentences made once from objects, never read by code."""
+"""Sentences made once from objects and never read by code."""
 
 import ast
 import re

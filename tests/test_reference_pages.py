@@ -1,4 +1,4 @@
-"""The pages of docs/reference/ as complete lists of keys, commands, columns."""
+"""The completeness of the pages of docs/reference/."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Checks of arguments of public functions, derived from their annotations."""
+"""Checks of the arguments of public functions against their annotations."""
 
 import builtins
 import sys

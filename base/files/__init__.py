@@ -1,1 +1,1 @@
-"""Files: written whole or not at all, read with a limit of size, tables and records in them."""
+"""Safe reading and writing of files."""

@@ -1,4 +1,4 @@
-"""The writer of files, which are complete or absent."""
+"""The writer of files that are complete or absent."""
 
 from __future__ import annotations
 

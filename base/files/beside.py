@@ -1,4 +1,4 @@
-"""A file with a similar name in the same folder, for messages about one that is missing."""
+"""The file of the same folder whose name is most like that of a missing file."""
 
 from itertools import islice
 from pathlib import Path

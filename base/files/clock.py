@@ -1,4 +1,4 @@
-"""Times of rows as loggers write them, converted to seconds."""
+"""Times of a table's rows in seconds from the stamps of a logger's clock."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Column names of instruments or programs, matched to the project's columns with their units.
+"""Column names of instruments matched to the project's columns.
 
 A unit stands in brackets, behind a slash, a comma, a space or an underscore: ``Temp (°C)``, ``T_display/degC``.
 """

@@ -1,4 +1,4 @@
-"""Readers of text or TOML files, with one clear error for each fault."""
+"""Readers of text or TOML files with one clear error for each fault."""
 
 from __future__ import annotations
 

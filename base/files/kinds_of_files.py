@@ -1,4 +1,4 @@
-"""The kind of a text file, recognised by words that only one kind has."""
+"""The kind of a text file by words that only one kind has."""
 
 import re
 

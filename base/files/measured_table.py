@@ -1,4 +1,4 @@
-"""Measured columns over time, read from a table in SI units."""
+"""A table of measured columns over time in SI units."""
 
 from __future__ import annotations
 

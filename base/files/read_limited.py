@@ -1,4 +1,4 @@
-"""Input files, read with a limit of size."""
+"""The reader of input files with a limit on their size."""
 
 import stat
 from pathlib import Path

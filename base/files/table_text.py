@@ -1,4 +1,4 @@
-"""The text of a table decoded from the bytes that loggers, spreadsheets or SPICE programs write."""
+"""The text of a table decoded from the bytes that other programs write."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Arrays, compiled functions, processor cores, and the program that computed a result."""
+"""Numerical work: arrays and the compiled functions that take them."""

@@ -1,4 +1,4 @@
-"""Arrays: the names of their types, read-only copies, the form that kernels take."""
+"""The forms of arrays that results hold and kernels take."""
 
 import numpy as np
 import numpy.typing as npt

@@ -1,4 +1,4 @@
-"""Compiled functions with a private cache of machine code, named by a hash of the sources.
+"""Compiled functions with a private cache of machine code.
 
 numba's cache does not notice a change in another file than a function's own, and holds pickles: whoever can write it
 can run code as the user who reads it.

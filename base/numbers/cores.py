@@ -1,4 +1,4 @@
-"""The number of cores of a computation, with one thread for its linear algebra."""
+"""The number of processor cores that a computation may use."""
 
 import os
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""The program that computed a result: its version, with a digest of the files that determine the numbers."""
+"""The identity of the program that computed a result: its version and the digest of its files."""
 
 import hashlib
 from collections.abc import Iterator

@@ -1,1 +1,1 @@
-"""Words: numbers, names and texts as people read them."""
+"""Text as people read it."""

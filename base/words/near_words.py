@@ -1,4 +1,4 @@
-"""The known words nearest to one that is not known, for every "did you mean" of the four packages."""
+"""The known words nearest to an unknown one."""
 
 from collections.abc import Iterable
 

@@ -1,4 +1,4 @@
-"""Numbers as text for people, with digits enough for a comparison to read as it is."""
+"""Numbers as text for people."""
 
 MOST = 17
 """With this many digits, two different numbers never read the same."""

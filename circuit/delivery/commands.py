@@ -1,4 +1,4 @@
-"""What a device puts out, as a file states it: its column, and the codes of its commands."""
+"""A device's output as a file states it: its column and the codes of its commands."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Delivery of a cue by a device: quantised, held, limited, simulated again.
+"""Delivery of a cue by a device.
 
 A file of samples begins and ends at rest: its first update (`lead_s`) holds the baseline, its last row marks the end.
 """

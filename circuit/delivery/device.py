@@ -1,4 +1,4 @@
-"""A device: the hardware that plays a drive, as sourced numbers from a device file."""
+"""A device: the hardware that plays a drive."""
 
 from __future__ import annotations
 

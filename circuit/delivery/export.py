@@ -1,4 +1,4 @@
-"""Export in one call: files that play the icons, or the reasons for refusing them."""
+"""Export in one call: files that play the icons or the reasons for refusing them."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

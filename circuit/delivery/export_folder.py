@@ -1,4 +1,4 @@
-"""An export folder: every file of an export appears in it at once, or none does.
+"""An export folder in which all files appear at once.
 
 An export owns its folder NAME. The next one is built as `.NAME.thermicon-part` beside it; when it is complete, NAME is
 renamed to NAME.before and the new folder to NAME.

@@ -1,4 +1,4 @@
-"""The current that flows when a device plays its samples, and the state in which a play begins."""
+"""The current that flows when a device plays its samples."""
 
 from __future__ import annotations
 

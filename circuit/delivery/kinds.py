@@ -1,4 +1,4 @@
-"""The five kinds of device by what they put out: its column, unit, codes, ends, player."""
+"""The five kinds of device by what they put out."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The nearest cue that a rig can reach, for one that it cannot: the same shape slower, or smaller."""
+"""The nearest cue that a rig can reach for one that it cannot."""
 
 import math
 from collections.abc import Callable, Sequence

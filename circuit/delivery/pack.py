@@ -1,4 +1,4 @@
-"""The files of an export in memory: drives with sidecars, files of the set."""
+"""The files of an export in memory."""
 
 import hashlib
 import json

@@ -1,4 +1,4 @@
-"""Icons prepared for export: delivered by a device, judged by the gate, accepted or refused."""
+"""Icons prepared for export."""
 
 from __future__ import annotations
 

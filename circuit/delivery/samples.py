@@ -1,4 +1,4 @@
-"""Samples: a designed drive as the codes of a device at its update rate, with the resulting current."""
+"""Samples: a designed drive as the codes of a device at its update rate."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Set-points for a thermode: the display of a design as straight segments, with the response of its own loop.
+"""Set-points for a thermode: the designed display as straight segments.
 
 The rig is not involved: a thermode measures its own surface and corrects it.
 """

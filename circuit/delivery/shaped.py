@@ -1,4 +1,4 @@
-"""Set-points shaped for the loop that plays them, so that the display follows the design.
+"""Set-points that a loop follows so that the display follows the design.
 
 A loop that is calm in every corner of a rig is too slow to follow a cue. So its set-points lead: where the simulated
 display misses the design, the set-point in force a little earlier is corrected by as much, a few times.

@@ -1,4 +1,4 @@
-"""How control loops take over a display that was without power, which no set-points shape."""
+"""How control loops take over a display that was without power."""
 
 from __future__ import annotations
 

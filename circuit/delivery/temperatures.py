@@ -1,4 +1,4 @@
-"""Temperatures against time, for a controller with its own loop around the rig's module.
+"""Set-points against time for a controller around the rig's own module.
 
 The set-points are the means of the designed display temperature over each period, held until the next, shaped through
 the loop that plays them (`shaped.py`). The display is that of the rig's own module following them by that loop, at the

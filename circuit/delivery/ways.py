@@ -1,4 +1,4 @@
-"""What is done with each kind of device: a cue is delivered, and what one delivers is judged by the gate."""
+"""Delivery and judgement of a cue by the kind of device."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The safety gate for a delivered cue, with an open loop's display in the corners of a rig's uncertainty.
+"""The safety gate for a delivered cue.
 
 A thermode shows its own set-points at its own tick: they are judged as they stand, with its lag and without.
 """

@@ -1,1 +1,1 @@
-"""Rig parameters from measured logs, with intervals."""
+"""Rig parameters from measured logs."""

@@ -1,4 +1,4 @@
-"""The drive between the rows of a log, unknown or thinned to fewer rows."""
+"""The drive between the rows of a log."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""The keys of a rig that can be fitted to a log: scale, bounds, useful precision."""
+"""The keys of a rig that can be fitted to a log."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""A measured log: columns over the time of one clock, checked for what no fit could mend."""
+"""A measured log: checked columns over the time of one clock."""
 
 from __future__ import annotations
 

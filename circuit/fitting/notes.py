@@ -1,4 +1,4 @@
-"""Remarks of a fit about its drives, starts, sensors, clocks, or keys that the log did not narrow.
+"""Remarks of a fit for the reader of its result.
 
 Of several causes of one misfit the first is named: a column that is late and explains it all, a fit that did not come
 to rest, a start that was not steady, and only then keys that are held fixed.

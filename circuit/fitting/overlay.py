@@ -1,4 +1,4 @@
-"""A measured log laid beside a simulated trace, on the trace's clock."""
+"""A measured log on the clock of a simulated trace."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

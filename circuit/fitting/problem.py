@@ -1,4 +1,4 @@
-"""The least-squares problem of a fit: free parameters, residuals, derivatives.
+"""The least-squares problem of a fit.
 
 Fitted along with the keys are the zero of every temperature sensor, the distance of the sensors from the drive within a
 row, shift and drift of every further clock and, unless left out, the layers of the skin.

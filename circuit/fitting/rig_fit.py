@@ -1,4 +1,4 @@
-"""The result of a fit: parameters with intervals, residuals, the fitted rig."""
+"""The result of a fit."""
 
 from __future__ import annotations
 

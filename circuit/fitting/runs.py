@@ -1,4 +1,4 @@
-"""Runs of logs: drives, known or not, with their measured columns."""
+"""Runs of logs: drives with their measured columns."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The fit itself: robust least squares, whose standard deviations come from the residuals of each channel."""
+"""The robust least-squares solution of a fit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""A synthetic laboratory: the logs that a rig would give, with the noise of instruments."""
+"""A synthetic laboratory: the noisy logs that a rig would give."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Residuals of a run whose drive is not known between rows, made independent of one another.
+"""Whitened residuals of a run whose drive is not known between rows.
 
 An unknown drive between two rows affects all later rows by the response of the circuit. Their errors are correlated,
 with a covariance K; residuals r become L⁻¹·r, where L·Lᵀ = K + σ² of the sensors. Long runs are split.

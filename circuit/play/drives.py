@@ -1,4 +1,4 @@
-"""Drive files as a player reads them: the bytes that were judged, and nothing else."""
+"""Drive files as a player reads them."""
 
 from __future__ import annotations
 

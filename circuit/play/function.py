@@ -1,4 +1,4 @@
-"""Functions of the user as a line to a temperature controller, which is sent set-points one by one."""
+"""A user's functions as a line to a temperature controller."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The guard of a player: rests and plays as plans of steps, after the demands that must be met before."""
+"""The guard of a player: rests and plays as plans of steps."""
 
 from __future__ import annotations
 

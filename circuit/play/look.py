@@ -1,4 +1,4 @@
-"""One look at the sensors of a display, in a thread of its own."""
+"""One look at the sensors of a display in a thread of its own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An NI analogue output as a line: single voltages, or blocks clocked by the hardware."""
+"""An NI analogue output as a line."""
 
 from __future__ import annotations
 

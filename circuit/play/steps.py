@@ -1,4 +1,4 @@
-"""The steps of a guard: looks that are due or late, what is sent, and the output off where something is wrong."""
+"""The steps of a guard on a line."""
 
 from __future__ import annotations
 

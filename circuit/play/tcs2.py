@@ -1,4 +1,4 @@
-"""The serial line of a QST.Lab TCS II, which clocks a profile itself once it was sent."""
+"""The serial line of a QST.Lab TCS II."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""thermicon.circuit.rig: rig files → module, heat sink, driver, contact, skin, uncertainty."""
+"""thermicon.circuit.rig: rig files → everything between the drive and the receptors."""

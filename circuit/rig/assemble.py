@@ -1,4 +1,4 @@
-"""Assembly of a rig's parts from its file, in SI units."""
+"""Assembly of a rig's parts from its file."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""A rig at one corner of its uncertainty, which may exceed the limits of a rig file."""
+"""A rig at one corner of its uncertainty."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""Checks of the values of a rig's keys, with a message for each wrong or unusual one."""
+"""Checks of the values of a rig's keys."""
 
 from __future__ import annotations
 

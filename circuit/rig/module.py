@@ -1,4 +1,4 @@
-"""The Peltier module: voltage, parameters from a data sheet.
+"""The Peltier module with its parameters from a data sheet.
 
 Equations: Lineykin & Ben-Yaakov, IEEE Trans. Ind. Appl. 43 (2007) 505, and their four-figure form, exact in Qmax.
 Current is positive when it cools the skin side.

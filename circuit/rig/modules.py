@@ -1,4 +1,4 @@
-"""Shipped modules by name, and the module of a rig, given by parameters, data sheets or a name."""
+"""The module of a rig by its name or by its own numbers."""
 
 import math
 from collections.abc import Sequence

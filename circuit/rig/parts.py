@@ -1,4 +1,4 @@
-"""Parts of a rig other than module or skin: heat sink, driver, contact, probes."""
+"""Parts of a rig other than module or skin."""
 
 import re
 from dataclasses import dataclass

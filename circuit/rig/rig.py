@@ -1,4 +1,4 @@
-"""A rig: one frozen object with module, driver, contact, air, skin, read from a rig file."""
+"""A rig: everything between a device's output and the receptors."""
 
 from __future__ import annotations
 

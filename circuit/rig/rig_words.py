@@ -1,4 +1,4 @@
-"""A rig in words: limitations of its data, unusual values."""
+"""A rig in words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The schema of a rig file: keys, units, limits."""
+"""The schema of a rig file."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache

@@ -1,4 +1,4 @@
-"""The rules of safety: sourced limits, tightened freely by a rig file, loosened only with a written reason."""
+"""The rules of safety with their sourced limits."""
 
 from __future__ import annotations
 

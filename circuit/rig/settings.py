@@ -1,4 +1,4 @@
-"""The document of a rig, with changes by dotted keys or ``key=value`` texts."""
+"""The document of a rig with changes by dotted keys."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""The uncertainty of a rig: assumed spreads, or narrower ones with a reason.
+"""The uncertainty of a rig: assumed spreads or narrower ones with a reason.
 
 A smaller uncertainty makes the worst case milder and so loosens the gate of safety, as a looser limit does: it needs a
 written reason, which is reported with every verdict.

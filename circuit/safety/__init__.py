@@ -1,1 +1,1 @@
-"""thermicon.circuit.safety: limits, exposure, worst-case verdicts."""
+"""thermicon.circuit.safety: drives → worst-case verdicts."""

@@ -1,4 +1,4 @@
-"""The corners of a rig's uncertainty, in each of which a drive must be safe.
+"""The corners of a rig's uncertainty in which a drive must be safe.
 
 Contact, gain, Seebeck coefficient, thermal conductance and plates are at either end of their uncertainty, in all
 combinations. Heat sink and ambient move together: every temperature rises with those of the heat sink and of deep

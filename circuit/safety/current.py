@@ -1,4 +1,4 @@
-"""A module that a current drives, in all corners of its rig, as a plant of the gate.
+"""A module under a given current as a plant of the gate.
 
 The bounds of repetition hold for temperatures only, not for rates, which depend on differences between nodes. Rates
 are therefore checked by simulation: each drive is played after every other drive, starting from rest and from its

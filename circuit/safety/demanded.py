@@ -1,4 +1,4 @@
-"""What hardware must prevent so that currents stay safe with a single fault, in any play after the shortest pause.
+"""The demands on the hardware that keep given currents safe with a single fault.
 
 Shorter pauses need a quicker watchdog and a quicker cut-off. Where these would be quicker than PRACTICAL_S, and are not
 with a pause in which display and skin recover, the pause is lengthened instead; so it is where a single cut-off would

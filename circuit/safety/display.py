@@ -1,4 +1,4 @@
-"""A display with its own control loop, as a plant of the gate: skin under the temperatures that it shows.
+"""A display with its own control loop as a plant of the gate.
 
 Module, driver and heat sink of the rig are not involved. Uncertain are the contact, the room (and with it deep tissue)
 and how closely the device follows: at once, which is the worst case for the rate, or with its lag. A play ends with the

@@ -1,4 +1,4 @@
-"""A rig in all corners of its uncertainty, side by side: drives played, currents held, states carried on.
+"""A rig in all corners of its uncertainty side by side.
 
 A drive is played in stretches, so that the memory needed depends neither on its length nor on its updates. Rows are
 no farther apart than 10 ms, over which the rate of skin temperature is taken, nor than the drive's own updates.

@@ -1,4 +1,4 @@
-"""Thermal exposure of tissue: CEM43, the burn integral of Henriques.
+"""Thermal exposure of tissue.
 
 Temperature is taken as linear between rows. CEM43 is then exact. The Henriques rate over one row is expanded about its
 middle; rows that differ by more than 0.05 K are cut into pieces that do not: under 1e-8 of the integral is lost.

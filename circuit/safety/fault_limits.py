@@ -1,4 +1,4 @@
-"""The limits that a single fault may reach: wider by a kelvin for skin, and with a dose of their own."""
+"""The limits that a single fault may reach."""
 
 from __future__ import annotations
 

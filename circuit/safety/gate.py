@@ -1,4 +1,4 @@
-"""The safety gate: a drive checked against every rule in the worst case over rig, endings, repetition."""
+"""The safety gate: a drive checked against every rule in the worst case."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace

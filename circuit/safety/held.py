@@ -1,4 +1,4 @@
-"""Displays that a fault holds: how far from its healthy range, and for how long, skin endures one.
+"""Displays that a fault holds and how long skin endures them.
 
 A driver that is stuck at a current between its limits takes the display to a level at which it stays. Neither watchdog
 nor cut-off acts where that lies inside the cut-off. So a display may stay just inside a cut-off for half an hour, or a

@@ -1,4 +1,4 @@
-"""What prevents a host that hangs and a driver stuck at its limit, in plays and before them."""
+"""Demands against single faults in plays and before them."""
 
 from __future__ import annotations
 

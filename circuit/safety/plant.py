@@ -1,4 +1,4 @@
-"""The interface between the gate and a module or display in all corners; also the result of one play.
+"""The gate's interface to a plant and the result of one play.
 
 There are two: a module that a current drives (`current.py`), a display that shows temperatures (`display.py`).
 """

@@ -1,4 +1,4 @@
-"""The steady cycle of a drive, with bounds for any number of plays in any order.
+"""The steady cycle of a drive and the bounds of repeated plays.
 
 With a given current the circuit is linear in its temperatures, and a node never gets colder because another is warmer:
 a play with its pause is a map x → Φ·x + g with Φ ≥ 0. The state before a play therefore tends to a fixed point, the

@@ -1,4 +1,4 @@
-"""Codes of what rules are about, as compiled checks count it."""
+"""Codes of the quantities that rules limit."""
 
 SKIN, DISPLAY, RECEPTOR, HOT_PLATE, RATE, DOSE, BURN, WARMER = range(8)
 """Codes of quantities: the columns of WATCHED, then what is computed from them; the last three add up."""

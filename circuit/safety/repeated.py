@@ -1,4 +1,4 @@
-"""Repeated plays: their verdict, their shortest safe pause."""
+"""Repeated plays and their shortest safe pause."""
 
 import math
 from bisect import bisect_left

@@ -1,4 +1,4 @@
-"""A session: icons in sequence as one run, with verdicts on the whole and on each play."""
+"""A session: icons in sequence as one run with its verdicts."""
 
 from __future__ import annotations
 

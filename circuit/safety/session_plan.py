@@ -1,4 +1,4 @@
-"""The plan of a session: the order of its icons, their number, gaps, seed."""
+"""The plan of a session: the order of play with its gap."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Simulation of a session: one run, divided into plays, with its worst case.
+"""Simulation of a session as one run.
 
 A session is a given sequence, so the gate judges it as one play, without repetition. Single faults of the hardware are
 judged by an export, not here.

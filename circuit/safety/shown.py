@@ -1,4 +1,4 @@
-"""The display without a fault: how far it goes, and how long it stays beyond a temperature."""
+"""The range of a display without a fault and its time beyond a temperature."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Steady cycles and bounds of plays on a heat sink with a controller of its own, by simulating them again and again.
+"""Steady cycles and bounds of plays by repeated simulation on a heat sink with its own controller.
 
 Such a play is no map of its nodes, since the controller has a state and a greatest power. On an ideal heat sink it is,
 and nearly the same one: the bound of these maps is played, and their constants are moved until no play leads out of it.

@@ -1,4 +1,4 @@
-"""Single faults of a drive played open loop: a stopped host, a driver stuck at its limit.
+"""Single faults of a drive played open loop.
 
 They do not make a drive unsafe by themselves, since hardware prevents them. Simulating them in the worst corners gives
 what the hardware must do. With a given current a play that begins warmer stays warmer at every node, so a hang in any

@@ -1,4 +1,4 @@
-"""How long what follows a play is judged, and how quick hardware is asked to be at most."""
+"""Times that bound the judgement after a play and the demands on hardware."""
 
 ENDING_S = 60.0
 """How long each ending is followed in full: until somebody has noticed."""

@@ -1,4 +1,4 @@
-"""The starts of plays: at rest, first after no power, later in any order.
+"""The states from which plays begin.
 
 A later play begins between the warm and the cold bound of all plays after the shortest pause. A first play follows a
 rest. Before that rest the display was without power, or a play was stopped at any instant and no current has flowed

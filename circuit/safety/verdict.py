@@ -1,4 +1,4 @@
-"""The verdict on one run: safety limits with a summary of target, extremes, energy.
+"""The verdict on one run.
 
 This is not a medical or ethical clearance, and a hardware cut-off is required.
 """

@@ -1,4 +1,4 @@
-"""Verdicts in words, from their records.
+"""Verdicts in words.
 
 Nothing is decided here, and records load this module when somebody reads them: it knows them by their types only.
 """

@@ -1,4 +1,4 @@
-"""Rigs stacked for the kernels, which run many lanes (one cue on one rig each) on all cores."""
+"""Rigs stacked as the inputs of kernels."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs of a thermode: set-points, the display that follows them, the skin below.
+"""Runs of a thermode: the display that follows its set-points.
 
 There is no current to find: the display follows its set-points within its range, ramp rate and lag. A constant lag is a
 delay and not a miss, so the outcome is judged without it; the trace includes it. Of many people under one thermode, the

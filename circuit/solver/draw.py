@@ -1,4 +1,4 @@
-"""Pictures of a trace: temperatures, heat flow, current. Cool is blue, warm is orange; they also differ in grey."""
+"""Pictures of a trace. Cool is blue and warm is orange; they also differ in grey."""
 
 from __future__ import annotations
 

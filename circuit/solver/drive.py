@@ -1,4 +1,4 @@
-"""A drive: the current through a rig's module, held or linear between its rows.
+"""A drive: the current through a rig's module as rows over time.
 
 At duty D and current Ip a bridge pumps α·T·D·Ip, but its resistance heats with D·Ip², where a steady current of the
 same mean heats with (D·Ip)². A slow cycle also ripples the plate.

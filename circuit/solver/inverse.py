@@ -1,4 +1,4 @@
-"""The inverse problem: the current that produces a cue's prescribed temperature, held over each driver period."""
+"""The inverse problem: the current that produces a cue's prescribed temperature."""
 
 import math
 from collections.abc import Sequence

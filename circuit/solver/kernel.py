@@ -1,4 +1,4 @@
-"""Compiled stepping: the circuit forward in time under a current that changes, for blocks of lanes side by side.
+"""Compiled stepping of the circuit in time under a changing current.
 
 A lane is one cue on one rig. Every step of length δ is the trapezoidal rule in its midpoint form: an implicit step of
 δ/2 with the step's mean current gives the state in the middle, x_mid, and x_new = 2·x_mid − x_old. The skin is a chain

@@ -1,4 +1,4 @@
-"""Exact solutions by modes: the circuit under a constant current, skin under a prescribed display.
+"""Exact solutions of the circuit by its modes.
 
 With a constant current the circuit is linear: C·dx/dt = −K·x + b. K is symmetric, since the Peltier heat of a plate
 depends on that plate alone, so C^(−1/2)·K·C^(−1/2) has real modes. A heat sink must be ideal or passive: one with a

@@ -1,4 +1,4 @@
-"""Steady states: the state under a constant current, or the current that holds a baseline."""
+"""Steady states of the circuit."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Receptors under a tracked display, by superposition of ramp responses.
+"""Receptor temperatures under a tracked display by superposition of ramp responses.
 
 The full solution finds each rig's current and steps module and skin with it. Where no limit is met, the display is the
 target to within a fraction of a millikelvin, and the skin under it is linear. Lanes that come near a limit are left to

@@ -1,4 +1,4 @@
-"""A trace: the result of one run, row by row."""
+"""A trace: the result of one run as rows over time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every command with its arguments and options, as ``--help`` states them."""
+"""Every command with its options as ``--help`` states them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables of the docs from data files: errors of cue files, limits of the safety gate, its uncertainties."""
+"""Tables of the docs from data files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables of the inference as Markdown, for the `site` marks in the pages of docs/.
+"""Tables of the inference as Markdown.
 
 Every number comes from the shipped data files, so that a page cannot say anything else.
 """

@@ -1,4 +1,4 @@
-"""The gallery: every shipped set with its picture, predicted confusions, cue text."""
+"""The gallery of the shipped sets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables of the keys of files, with values or defaults, from the schemas."""
+"""Tables of the keys of files from the schemas."""
 
 from __future__ import annotations
 

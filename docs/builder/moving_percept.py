@@ -1,4 +1,4 @@
-"""One icon and what is felt of it, moving: an SVG without scripts, from the program's own numbers."""
+"""A moving picture of one icon and its percept as SVG."""
 
 from __future__ import annotations
 

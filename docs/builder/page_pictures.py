@@ -1,4 +1,4 @@
-"""The pictures of pages, drawn while the site is built by the commands that `<!-- picture: … -->` marks name."""
+"""Pictures of pages that the site's build draws by the commands in `<!-- picture: … -->` marks."""
 
 import hashlib
 import re

@@ -1,4 +1,4 @@
-"""The source paper's figures as thermicon computes them, with the circuit that it solves."""
+"""The source paper's figures as thermicon computes them."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Tables of the sampled posterior as Markdown: constants, left-out predictions, variants.
+"""Tables of the sampled posterior as Markdown.
 
-The last two, and scores of forms of memory, are finished comparisons: tables that say by which version they were made.
+Left-out predictions, variants and forms of memory are finished comparisons: tables that state their version.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Pages of the Python API: the public names of the four packages, from their docstrings."""
+"""Pages of the Python API from its docstrings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The stack of a rig, from heat sink to blood, with the keys of its file beside each part."""
+"""The stack of a rig from heat sink to blood."""
 
 from __future__ import annotations
 

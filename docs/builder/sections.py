@@ -1,4 +1,4 @@
-"""The sections of the site, from the headings of docs/README.md."""
+"""The sections of the site from the headings of docs/README.md."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The source folder for Sphinx: copies of README, docs/, tutorials, with links that lead inside it."""
+"""The source folder that Sphinx builds the site from."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers, units or tables as Markdown."""
+"""Numbers and tables as Markdown."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Files other than cue text: JSON, shipped sets, the catalogue of errors."""
+"""Icons in files other than a user's cue text."""

@@ -1,4 +1,4 @@
-"""The content of a file of icons, or a mistake that says why it cannot be read."""
+"""The content of a file of icons or the mistake that says why it cannot be read."""
 
 import errno
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The catalogue of error codes: meaning, an example with its message, a corrected example."""
+"""The catalogue of error codes with examples."""
 
 from dataclasses import dataclass
 from textwrap import indent

@@ -1,4 +1,4 @@
-"""The methods paragraph about a set for a paper, with its unverified sources."""
+"""The methods paragraph about a set for a paper."""
 
 import re
 from collections.abc import Mapping, Sequence

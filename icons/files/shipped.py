@@ -1,4 +1,4 @@
-"""Icon sets that ship with the package, or of a user's file, by name."""
+"""Icon sets by the name of a shipped set or a file."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass

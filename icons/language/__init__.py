@@ -1,1 +1,1 @@
-"""From cue text to icons: grammar, recovery after a mistake, diagnosis, assembly."""
+"""The language of cue texts from its grammar to the errors that it reports."""

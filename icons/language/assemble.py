@@ -1,4 +1,4 @@
-"""Assembly of a set from the syntax tree, with the rules about the order of blocks."""
+"""Assembly of an icon set from the syntax tree."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Assembly of statements: the body of one icon or family, where parameters may take the place of numbers."""
+"""Assembly of the statements of one icon or family."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field

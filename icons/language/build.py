@@ -1,4 +1,4 @@
-"""Conversion of tokens to values in SI units, with an error at the place of each invalid one."""
+"""Conversion of syntax trees to values in SI units."""
 
 import re
 from collections.abc import Iterable

@@ -1,4 +1,4 @@
-"""Diagnosis of a family's parentheses: names, lists, ranges, units."""
+"""Diagnosis of a family's parentheses."""
 
 from ..model.units import UNITS
 from ..model.words import VOCABULARY, nearest_unit

@@ -1,4 +1,4 @@
-"""Diagnosis of numbers with a missing, unknown or wrong unit."""
+"""Diagnosis of numbers with a wrong unit or without one."""
 
 import re
 from collections.abc import Container

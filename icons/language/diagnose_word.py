@@ -1,4 +1,4 @@
-"""Diagnosis of missing or wrong prepositions (at, over, by, …) and of text after a complete statement."""
+"""Diagnosis of words that are wrong or missing in a statement or surplus behind it."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""A statement that failed to parse, as the rules of diagnosis receive it."""
+"""A statement that failed to parse."""
 
 from collections.abc import Iterable
 from collections.abc import Set as AbstractSet

@@ -1,4 +1,4 @@
-"""The formatter: cue text in canonical layout, one statement per line."""
+"""The formatter of cue texts."""
 
 from collections.abc import Iterable
 

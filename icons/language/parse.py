@@ -1,4 +1,4 @@
-"""The parser: cue text to an icon set or to all its errors, each with a corrected line that was tested."""
+"""The parser: cue text to an icon set or to all its errors."""
 
 from thermicon.base.checks.arguments import checked
 

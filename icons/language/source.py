@@ -1,4 +1,4 @@
-"""The source text of a cue file with its lines, columns, tokens."""
+"""The source text of a cue file and the places in it."""
 
 import re
 from bisect import bisect_right

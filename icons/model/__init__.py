@@ -1,1 +1,1 @@
-"""The meaning of a cue: statements, icons, families, sets, corner points."""
+"""The meaning of a cue text as objects from statements to corner points."""

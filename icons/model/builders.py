@@ -1,4 +1,4 @@
-"""Statements written in Python as they are in a cue text: ``cool(by=6, at=3)``, in K, K/s, s, °C or A.
+"""Statements written in Python with the words of a cue text.
 
 The statements themselves check what they are made of, and name their fields: a `by` is ``by_K``, an `at` a rate.
 """

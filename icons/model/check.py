@@ -1,4 +1,4 @@
-"""Semantic checks: an icon's statements followed in order, without writing repeats out."""
+"""Semantic checks of an icon's statements in the order in which they play."""
 
 import math
 from collections.abc import Sequence

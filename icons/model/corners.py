@@ -1,4 +1,4 @@
-"""Corner points: an icon written out without loss, the input of every simulator."""
+"""Corner points: the form of an icon that every simulator reads."""
 
 import math
 from collections.abc import Iterator, Sequence

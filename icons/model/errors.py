@@ -1,4 +1,4 @@
-"""One error of a cue file with its place, and the exception that carries them; ``data/mistakes.toml`` has the codes."""
+"""One error of a cue file with its place and the exception that carries such errors."""
 
 import tomllib
 import unicodedata

@@ -1,4 +1,4 @@
-"""An icon: a name with statements, their context, metadata, all checked on construction."""
+"""An icon: checked statements under a name."""
 
 import hashlib
 from dataclasses import dataclass, field

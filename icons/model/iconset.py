@@ -1,4 +1,4 @@
-"""An icon set: the icons of one file, whose families are counted without being expanded."""
+"""An icon set: the icons and families of one file."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass

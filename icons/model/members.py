@@ -1,4 +1,4 @@
-"""Members of a family, each checked like an icon, with a summary of all."""
+"""Checks of all members of a family."""
 
 import re
 from collections.abc import Sequence

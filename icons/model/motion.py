@@ -1,4 +1,4 @@
-"""Motion of the level under each statement: end, duration, extremes, straight pieces."""
+"""The motion of the level under each statement."""
 
 import math
 from collections.abc import Iterator

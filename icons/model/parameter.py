@@ -1,4 +1,4 @@
-"""A parameter of a family: name, unit, values, places in the statements."""
+"""A parameter of a family with its values and the places that take them."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress

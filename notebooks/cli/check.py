@@ -1,4 +1,4 @@
-"""``thermicon check``: the errors of cue files, or one line per file."""
+"""``thermicon check``: the errors of cue files."""
 
 from __future__ import annotations
 

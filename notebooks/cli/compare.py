@@ -1,4 +1,4 @@
-"""``thermicon compare``: two rigs, icons, sets or curves as one table of differences with a figure."""
+"""``thermicon compare``: the differences between two things of one kind."""
 
 from __future__ import annotations
 

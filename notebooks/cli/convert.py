@@ -1,4 +1,4 @@
-"""``thermicon convert``: icons as cue text or JSON, recordings as icons."""
+"""``thermicon convert``: icons in another form of file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``thermicon doctor``: independent checks of the installation, each with its cure."""
+"""``thermicon doctor``: independent checks of the installation."""
 
 import json as json_text
 import platform

@@ -1,4 +1,4 @@
-"""``thermicon export``: icons as drive files with sidecars, or the reasons why they are refused."""
+"""``thermicon export``: icons as drive files or the reasons why they are refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``thermicon fit``: rig parameters from measured logs, or the plan of a log before it is measured."""
+"""``thermicon fit``: rig parameters from measured logs or the plan of a log."""
 
 from pathlib import Path
 from typing import Annotated

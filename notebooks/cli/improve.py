@@ -1,4 +1,4 @@
-"""``thermicon improve``: better icons, from edits of single pairs to a search of whole families."""
+"""``thermicon improve``: better icons by edits or by search."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``thermicon list``: shipped sets, rigs or records, with citations or copies to start from."""
+"""``thermicon list``: everything that ships with the program."""
 
 import shlex
 from collections.abc import Sequence

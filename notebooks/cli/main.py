@@ -1,4 +1,4 @@
-"""The command line: commands by task, handling of errors, interrupts, closed pipes.
+"""The entry point of the command line.
 
 A command imports what it needs when it runs, so that ``check`` answers at once. The work of each command is in a module
 of this package.

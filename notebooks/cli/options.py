@@ -1,4 +1,4 @@
-"""Options shared by the commands, with cue files as input or files as output.
+"""Options that several commands share.
 
 A group checks itself, loads what it names, and knows its words again. A command takes groups as arguments; `flat` lays
 their options out beside its own for typer.

@@ -1,4 +1,4 @@
-"""Words that people try as commands, each with the right command; also the short form of usage errors."""
+"""Answers to words that are no commands and the short form of usage errors."""
 
 import tomllib
 from importlib import resources

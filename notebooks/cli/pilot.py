@@ -1,4 +1,4 @@
-"""``thermicon pilot``: the plan of an experiment, or the prediction conditioned on its answers."""
+"""``thermicon pilot``: the plan of an experiment or the prediction conditioned on its answers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``thermicon rank``: predicted detection, confusions, information of one set."""
+"""``thermicon rank``: the predicted identification of one set."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``thermicon simulate``: icons, a drive or a session, as summary, trace, figure or netlist."""
+"""``thermicon simulate``: the run of icons or of a drive on a rig."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``thermicon validate``: predicted beside published results, as a table or as JSON."""
+"""``thermicon validate``: predicted beside published results."""
 
 from json import dumps
 from typing import Annotated

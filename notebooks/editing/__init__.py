@@ -1,1 +1,1 @@
-"""Cue text in an editor: errors, completion, history, minimal edits."""
+"""Cue text in an editor."""

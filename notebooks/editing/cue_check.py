@@ -1,4 +1,4 @@
-"""Cue text as an editor holds it, parsed at every keystroke, with its errors in the editor's form."""
+"""The check of a cue text at every keystroke of an editor."""
 
 from __future__ import annotations
 

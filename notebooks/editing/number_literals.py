@@ -1,4 +1,4 @@
-"""Numbers in the text of a statement, rewritten in place in their own unit."""
+"""Numbers in the text of a statement and their change in place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The writer of figures for the screen, for print or for a page.
+"""The writer of figures.
 
 Figures are drawn for a screen. For paper they are set in the width asked for, without a title, with smaller letters,
 thinner lines and a letter on each panel; keys that stood beside the panels stand below where there is no room. The

@@ -1,4 +1,4 @@
-"""Figures of a set: distances beside confusions, predicted beside observed answers."""
+"""Figures of a set as heat maps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The style of all figures: colours, widths, axes, keys beside the panels."""
+"""The style of all figures."""
 
 from __future__ import annotations
 

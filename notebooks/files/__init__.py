@@ -1,1 +1,1 @@
-"""Files written whole or not at all, export folders, traces read back."""
+"""Files of the command line and the workbench."""

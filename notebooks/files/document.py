@@ -1,4 +1,4 @@
-"""A cue text under edit: its file, its saved state, undo, redo, versions."""
+"""A cue text under edit with its history."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names of output files, checked before long work starts."""
+"""Checks of the names of output files before long work starts."""
 
 import os
 from collections.abc import Sequence

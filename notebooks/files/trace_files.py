@@ -1,4 +1,4 @@
-"""Curves over time from a trace or its file, two of them compared on common times."""
+"""Curves over time from traces or files and their differences at common times."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Versions of a text in one hidden file beside it: kept by hand, or not yet saved."""
+"""Versions of a text in one hidden file beside it."""
 
 import os
 import secrets

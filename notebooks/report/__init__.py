@@ -1,1 +1,1 @@
-"""Text for people: messages, numbers, tables, sentences."""
+"""Results as text for people."""

@@ -1,4 +1,4 @@
-"""Blocks of text, tables or figures, the form of every report.
+"""Blocks: the parts of which every report consists.
 
 In HTML nothing is fetched from anywhere, there are no scripts and no dates, and equal blocks give equal bytes.
 """

@@ -1,4 +1,4 @@
-"""The report of ``thermicon fit``: parameters, residuals, doubts, the table of a plan."""
+"""The report of ``thermicon fit``."""
 
 from __future__ import annotations
 

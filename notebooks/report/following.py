@@ -1,4 +1,4 @@
-"""The next step for a set: the command that helps most, or the reason why none does."""
+"""The next step for a set."""
 
 from __future__ import annotations
 

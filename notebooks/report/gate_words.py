@@ -1,4 +1,4 @@
-"""The gate's findings in a report: permitted repetition, demands on the hardware.
+"""The gate's findings in a report.
 
 What holds for all icons of an export is said once, and of what differs the strictest, with the icon that it is of.
 """

@@ -1,4 +1,4 @@
-"""The report of ``thermicon improve``: distinguishable icons of a pool, a search beside its start."""
+"""The report of ``thermicon improve``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The report of ``thermicon pilot``: data beside their prediction, the prediction before and after."""
+"""The report of ``thermicon pilot``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The details of a ranking: notes, intervals, reasons for the worst pair, assumptions."""
+"""The details of a ranking."""
 
 from __future__ import annotations
 

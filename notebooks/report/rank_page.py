@@ -1,4 +1,4 @@
-"""``rank --report``: one ranking as a single page to mail, print or read on a phone."""
+"""``rank --report``: one ranking as a single page."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A ranking as blocks: first the twenty lines that a user asks first, the rest on demand."""
+"""A ranking as blocks of a report."""
 
 from __future__ import annotations
 

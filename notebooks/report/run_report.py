@@ -1,4 +1,4 @@
-"""Reports of runs: one trace, a session, a sweep, differences of two runs or sets."""
+"""Reports of runs."""
 
 from __future__ import annotations
 

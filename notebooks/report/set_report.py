@@ -1,4 +1,4 @@
-"""The full report of a set: ranking, choice, goal, edits."""
+"""The full report of a set."""
 
 from __future__ import annotations
 

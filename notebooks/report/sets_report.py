@@ -1,4 +1,4 @@
-"""Two sets beside each other: the difference in identification, with its certainty."""
+"""The comparison of two sets by identification."""
 
 from __future__ import annotations
 

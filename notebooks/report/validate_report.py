@@ -1,4 +1,4 @@
-"""The report of ``thermicon validate``: targets, predictions of rows without their own experiment."""
+"""The report of ``thermicon validate``."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""A whole experiment from one file: orders, pauses, judged drives, a script, tables."""
+"""A whole experiment from one file."""

@@ -1,4 +1,4 @@
-"""The plan of a study from its file: pauses, orders, verdicts, threshold levels."""
+"""The plan of a study from its file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The files of a study's folder: drives, conditions, script, planned events, verdicts, instructions."""
+"""The files of a study's folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The judgement of a study: every drive by the export gate, then whole sessions in the order of play."""
+"""The judgement of a study's drives and sessions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Orders of play from one seed: Williams designs, balanced sequences, random ones.
+"""Orders of play from one seed.
 
 Python's own generator is used, whose sequences are the same in every version; those of numpy are not promised to be.
 """

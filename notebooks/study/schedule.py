@@ -1,4 +1,4 @@
-"""The schedule of a study: every trial with its planned time, as tables in the form of BIDS.
+"""The schedule of a study: every trial with its planned time.
 
 Limits on their number are checked before anything is simulated.
 """

@@ -1,4 +1,4 @@
-"""Gap between icons and landing of the hand, both derived from simulation."""
+"""The gap between icons and the landing of the hand by simulation."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The time line as data: an icon's run with corners, events, frames."""
+"""The time line of an icon as data."""

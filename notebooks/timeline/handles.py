@@ -1,4 +1,4 @@
-"""The draggable corners of an icon, each with the number in the text on which it depends."""
+"""The draggable corners of an icon."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Marks beside the curves of a run: events, stretches where the target is missed."""
+"""Marks beside the curves of a run."""
 
 from __future__ import annotations
 

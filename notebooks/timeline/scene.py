@@ -1,4 +1,4 @@
-"""The scene of the design view: a cue text on a rig as data, with every error."""
+"""The scene of the design view: a cue text on a rig as data."""
 
 from __future__ import annotations
 

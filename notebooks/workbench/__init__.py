@@ -1,1 +1,1 @@
-"""The workbench: models, views, widgets."""
+"""The workbench: a page of widgets to design icons on."""

@@ -1,4 +1,4 @@
-"""The bar above the tabs: file, icons, rig, undo, messages."""
+"""The bar above the tabs: actions on the document."""
 
 from __future__ import annotations
 

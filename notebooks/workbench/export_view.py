@@ -1,4 +1,4 @@
-"""The export view: delivered drives, verdicts, drive files."""
+"""The export view: icons as a device would play them."""
 
 from __future__ import annotations
 

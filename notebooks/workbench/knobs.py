@@ -1,4 +1,4 @@
-"""Knobs for the usual unknowns of contact, skin or driver, each with its range."""
+"""Knobs for the usual unknowns of a rig."""
 
 import math
 from collections.abc import Mapping

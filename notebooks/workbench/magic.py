@@ -1,4 +1,4 @@
-"""The ``%%cue`` cell magic: cue text in a notebook cell becomes a set with its picture, or a list of its mistakes.
+"""The ``%%cue`` cell magic for cue text in a notebook.
 
 ``%load_ext thermicon.notebooks`` switches it on, and small pictures of matplotlib figures with it.
 """

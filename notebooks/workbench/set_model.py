@@ -1,4 +1,4 @@
-"""A set ranked for the set view, first quickly, then well."""
+"""A set ranked for the set view first quickly and then well."""
 
 from __future__ import annotations
 

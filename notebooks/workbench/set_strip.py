@@ -1,4 +1,4 @@
-"""The strip beside the badge of the design view: identification of the set, its goal, the current icon.
+"""The strip beside the badge of the design view: identification of the set in a few numbers.
 
 A rough ranking comes first, then one as of the set view. Nothing is computed while a corner is dragged.
 """

@@ -1,4 +1,4 @@
-"""The set view: confusions, the selected pair with its cheapest edit, the perceptual map."""
+"""The set view: how people confuse the icons of a set."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The versions view: kept texts, each with its difference from the editor's."""
+"""The versions view: kept texts with their differences from the editor's."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The workbench: design view, set view, export view, as one page of widgets or as figures."""
+"""The workbench: all views as one page of widgets or as figures."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The observer's constants inferred from published evidence: priors, experiments, likelihood, maximum, ablation."""
+"""The observer's constants inferred from published evidence."""

@@ -1,4 +1,4 @@
-"""``python -m thermicon.perception.evidence``: make the shipped results of the inference again, step by step.
+"""``python -m thermicon.perception.evidence``: make the shipped results of the inference again.
 
 ``fit`` infers the constants of every variant, and again without each experiment in turn to predict it (``--shipped``:
 predictions at the constants there are); ``sample`` writes draws of the posterior; ``observer`` the parameter file.

@@ -1,4 +1,4 @@
-"""The comparison of the model with the baseline, skin temperature alone, against published results."""
+"""The comparison of the model with skin temperature alone on published results."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The writer of the observer's parameter file: inferred constants, records taken over, noise of memory.
+"""The writer of the observer's parameter file.
 
 Constants are those of the maximum, since no draw is near the middle of them all; intervals cover 95 % of the draws.
 """

@@ -1,4 +1,4 @@
-"""Markov chains of a posterior: long moves along a surrogate, short ones around the normal approximation.
+"""Markov chains of a posterior.
 
 In coordinates w where the normal approximation at the maximum is standard normal, a step is one of three, drawn anew:
 

@@ -1,4 +1,4 @@
-"""Published experiments run on the observer: thresholds, reaction times, peaks, returns.
+"""Published experiments run on the observer.
 
 What is not stated where an experiment was found is stated here, as a condition. Constants were inferred from limits and
 reaction times on the forearm, and from none of the others.

@@ -1,4 +1,4 @@
-"""Identification from memory by every variant of the observer, with the derivatives of its statistics.
+"""Identification from memory by every variant of the observer.
 
 Six icons, and waves that differ in shape alone, shipped as `wave-confusions`, since published ones were not available
 in numbers. The same chain as `rank`, on the same people.

@@ -1,4 +1,4 @@
-"""Log posterior of the constants, with its maximum, where a normal approximates it.
+"""The log posterior of the constants with its normal approximation at the maximum.
 
 The maximum takes seconds where a sampler needs an hour. Gauss–Newton on the residuals; the Laplace approximation of the
 evidence is

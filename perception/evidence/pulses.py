@@ -1,4 +1,4 @@
-"""Short pulses: published cues known only by a summary, with invented substitutes.
+"""Short pulses: published cues known only by a summary.
 
 Of 52 sequences of one to three pulses the best 22 and 16 (the published counts) and 22 random ones are predicted.
 """

@@ -1,4 +1,4 @@
-"""Whole-body warmth: bare skin under radiant heat, for published thresholds in W/m².
+"""Whole-body warmth: bare skin under radiant heat.
 
 The skin is the column of a rig without its display; the flux is absorbed at the surface, from t = 0 on.
 """

@@ -1,4 +1,4 @@
-"""Published statistics as data, one number with its error in each row of the likelihood.
+"""Published statistics as the rows of the likelihood.
 
 `data/evidence.csv` has one row per statistic and `data/evidence.toml` one table per experiment; no trial data.
 """

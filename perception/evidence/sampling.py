@@ -1,4 +1,4 @@
-"""The posterior of all constants: chains on several cores, thinned to equal draws.
+"""Draws from the posterior of all constants.
 
 Chains do not know of each other, so that R-hat compares independent runs.
 """

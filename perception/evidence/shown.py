@@ -1,4 +1,4 @@
-"""Every published experiment run on every variant of the observer, for the validation report."""
+"""Every published experiment run on every variant of the observer."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

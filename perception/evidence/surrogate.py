@@ -1,4 +1,4 @@
-"""A quadratic model of every residual, which replaces the laboratory in long moves of the chains.
+"""A quadratic model of every residual that replaces the laboratory in long moves of the chains.
 
 Near the maximum each row's miss r is nearly quadratic in the constants: r ≈ a + b·w + wᵀ·Q·w in the coordinates w of
 the normal approximation, fitted to residuals computed at some thousand points. Its posterior is not normal, since

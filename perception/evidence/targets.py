@@ -1,4 +1,4 @@
-"""Targets of the validation, read from `data/targets.toml`.
+"""Targets of the validation.
 
 Published numbers themselves come from the table of thresholds alone.
 """

@@ -1,4 +1,4 @@
-"""The validation report: every published target, predicted beside reported, for every variant of the observer.
+"""The validation report: every published target beside its prediction.
 
 No count of passes is aimed at: a miss with its size and the mechanism suspected is a result.
 """

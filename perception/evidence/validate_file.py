@@ -1,4 +1,4 @@
-"""A validation report as plain data for `validation.json`, with None for missing values."""
+"""A validation report as plain data for `validation.json`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The verdict on a prediction: it holds, or misses a published number by so much."""
+"""The verdict on a prediction of a published number."""
 
 import math
 from dataclasses import dataclass

@@ -1,1 +1,1 @@
-"""Psychophysical procedures, simulated: an observer asked in the ways that laboratories ask."""
+"""Simulated psychophysical procedures."""

@@ -1,4 +1,4 @@
-"""A laboratory with one set of constants: drives of its stimuli, sensitivities of its people, answers.
+"""A laboratory with one set of constants.
 
 The quasi-random numbers of people and trials are the same for every set of constants, so that predictions change
 smoothly with the constants, as a search for a maximum needs.

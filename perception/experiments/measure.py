@@ -1,4 +1,4 @@
-"""Simulated measurements: thresholds, times, ratings or wrong names under a condition, on the skin of a rig.
+"""Simulated measurements under a condition on the skin of a rig.
 
 The tasks are those of the published experiments; `measure` asks new laboratories, a pilot those that its data leave.
 """

@@ -1,4 +1,4 @@
-"""Simulations of the conditioning experiments, with predictions of their statistics by the keys of `rows`.
+"""Simulations of the conditioning experiments.
 
 Numbers on a log scale are logarithms.
 """

@@ -1,4 +1,4 @@
-"""Tasks in a laboratory: press, choose, report or rate while a ramp is played.
+"""Tasks in a laboratory while a ramp is played.
 
 Rows of the evidence, measurements of a pilot and `measure` are all asked here.
 """

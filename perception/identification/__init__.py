@@ -1,1 +1,1 @@
-"""Identification of icons: distance between percepts, confusion, information."""
+"""Identification of icons from their percepts."""

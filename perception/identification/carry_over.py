@@ -1,4 +1,4 @@
-"""Carry-over from an icon to the next: temperature left in the skin, adaptation of the receptors.
+"""Carry-over from an icon to the next.
 
 People who differ in their thresholds feel every icon after every other one: for a single person, what is left falls out
 of memory at one gap. Between the display and the receptors the skin is linear, so that what is left of the icon before

@@ -1,4 +1,4 @@
-"""Perception of the designed against the delivered icons: detection, d′ to the other icons of the set.
+"""The perceived difference between designed and delivered icons.
 
 The device's change for the nominal person is scaled by each person's response to the icon, and added to it.
 That is exact for what scales with the icon, and wrong by about a tenth otherwise, since skins differ in lag.

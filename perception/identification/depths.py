@@ -1,4 +1,4 @@
-"""Receptor temperatures for many observers, interpolated between a few simulated depths."""
+"""Receptor temperatures of many observers by interpolation over depth."""
 
 from __future__ import annotations
 

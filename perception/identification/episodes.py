@@ -1,4 +1,4 @@
-"""Remembered episodes of icons: stretches of one quality, in their order, each with its features.
+"""Remembered episodes of icons: stretches of one quality with their features.
 
 Two forms: `episodes` compares intensities in logarithms and places icons symmetrically; `naming` compares ratings.
 """

@@ -1,4 +1,4 @@
-"""The comparison of delivered with designed icons as people feel them, passed to every export."""
+"""The perception of delivered beside designed icons for the sidecars of an export."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The prediction of each posterior draw for a set, with its own people, laboratory, memory.
+"""The prediction of each posterior draw for a set.
 
 A draw brings its own spread between people, an offset of the laboratory, and memory: its own, or, since no published
 posterior knows of it, drawn from its intervals.

@@ -1,4 +1,4 @@
-"""The identification task, with the noise of memory fitted to a published one.
+"""The identification task with the noise of memory.
 
 People distinguish two rates that differ by a fixed fraction, whatever rate and span (Bergmann Tiest & Kappers 2009).
 """

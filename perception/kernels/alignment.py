@@ -1,4 +1,4 @@
-"""Compiled loops that compare sequences of episodes: alignment, distances, shares of a distance, naming of trials.
+"""Compiled alignment of sequences of episodes.
 
     D[i, j] = min(D[i−1, j] + g_i², D[i, j−1] + g_j², D[i−1, j−1] + m_ij² where the qualities agree),  d′ = √D[n, m]
     m² = max(ΔI²/(σ_I² + s²) + (ΔR² + ΔW² + ΔP²)/σ_T², Δg²),   g = min(max(I − I_on, 0)/√(σ_I² + s²), r)

@@ -1,4 +1,4 @@
-"""Compiled loops of remembered episodes: bounds of stretches of one quality, with their features.
+"""Compiled loops that find the episodes of an icon.
 
 An episode of quality q opens where ψ_q reaches the bar c and is not below the other quality, starts where ψ_q last rose
 through c/2, and closes where ψ_q falls below c/2 or below the other quality. Two of one quality with a short gap and

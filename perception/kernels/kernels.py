@@ -1,4 +1,4 @@
-"""Compiled loops of the chain, one recursion each, imported only for a computation.
+"""Compiled recursions of the chain from receptor temperature to answers.
 
 Every kernel runs over rows independently, so that splitting rows over threads changes no bit.
 

@@ -1,4 +1,4 @@
-"""Compiled reports: the probability of a report by each time, from the first passage of two noisy channels.
+"""Compiled reports: the probability that a change is reported by each time.
 
     P(t) = mean over gains g and decision times d of 1 − exp(L_cold(t − d − δ_cold) + L_warm(t − d − δ_warm))
 

@@ -1,1 +1,1 @@
-"""The observer: constants with sources, variants of the model, distributions of people."""
+"""The observer: a model of a person with sourced constants."""

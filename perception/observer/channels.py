@@ -1,4 +1,4 @@
-"""Names shared by all stages: the two channels, the forms of memory, the receptor inputs.
+"""Names of channels and variants that all stages share.
 
 Two variants: temperature at receptor depth, or heat flow there (the hypothesis of Shani and Lineykin 2021).
 """

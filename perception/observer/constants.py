@@ -1,4 +1,4 @@
-"""Names of constants in files, draws or priors, mapped to the fields of the mechanisms.
+"""Names of constants mapped to the fields of the mechanisms.
 
 From fields declared with `constant` an observer is built, a file of records is read, and a table of draws is checked.
 """

@@ -1,4 +1,4 @@
-"""The file of posterior draws: header lines on their origin, one row per draw.
+"""The file of posterior draws.
 
 It is written by `python -m thermicon.perception.evidence`. Reading refuses a table of other evidence or another form.
 """

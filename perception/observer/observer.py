@@ -1,4 +1,4 @@
-"""The observer: the constants of a person, one mechanism each, from the parameter file or a draw.
+"""The observer: the constants of a person as mechanisms.
 
 Each number of `data/observer.toml` says what it was calibrated on, or that it is assumed, and carries its interval.
 """

@@ -1,4 +1,4 @@
-"""The observer model: nominal observer, differences between people, posterior.
+"""The observer model: a nominal observer and the distributions around it.
 
 Another than the shipped one is a table of posterior draws (.csv), or the records of one observer (.toml), which has no
 draws and so no intervals for a new laboratory.

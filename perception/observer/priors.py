@@ -1,4 +1,4 @@
-"""Parameters of the observer with their prior distributions, each with its source.
+"""Parameters of the observer with their prior distributions.
 
 Every parameter is inferred on a scale where its prior is normal: `to_value` goes from there to its own unit.
 """

@@ -1,1 +1,1 @@
-"""A pilot experiment: observed answers, the conditioned prediction, the plan of the next measurement."""
+"""A pilot experiment: the prediction conditioned on its answers and the plan of the next one."""

@@ -1,4 +1,4 @@
-"""Laboratories conditioned on data by weights of draws, or by fresh laboratories where too few draws carry weight.
+"""Laboratories conditioned on data.
 
 1. What was answered or measured is simulated in every draw of the prior; its likelihood weighs the draw.
 2. With at least `LEAST_EFFECTIVE` draws behind the data, laboratories are resampled by these weights.

@@ -1,4 +1,4 @@
-"""The files of a conditioned laboratory: a table of draws, the observer in their middle.
+"""The files of a conditioned laboratory.
 
 `LAB.csv` has the form of `posterior.csv`, with further columns for memory; the offset of the laboratory is part of its
 thresholds. `LAB.toml` is its first draw, which is a laboratory of the sample: the medians belong to none, and may

@@ -1,4 +1,4 @@
-r"""The likelihood of answers in a laboratory, with the weights that follow.
+r"""The likelihood of answers in a laboratory.
 
 A participant j of laboratory ℓ is one of its people, nobody knows which. With S virtual people whose confusions are
 C, and N_j[a, b] answers b to icon a,

@@ -1,4 +1,4 @@
-"""The reader of files with measured thresholds, reaction times or ratings.
+"""The reader of files with measurements of participants.
 
 Each value has a condition that can be simulated. The door reads a CSV file of values, or says what is wrong with it.
 """

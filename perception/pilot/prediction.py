@@ -1,4 +1,4 @@
-"""Predictions by samples of laboratories: scores and constants before and after data.
+"""Predictions by samples of laboratories before and after data.
 
 For the fit, experiments like the observed one are simulated, each in another laboratory. The posterior predictive p is
 the share of them that lie as far from the prediction; it is conservative where the same data have conditioned it. Of

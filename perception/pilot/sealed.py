@@ -1,4 +1,4 @@
-"""A sealed prediction: the log score of a `rank` file on later answers, beside guessing and skin alone.
+"""A sealed prediction: the log score of a `rank` file on later answers.
 
 Its best possible score is the one expected if its own matrix is true.
 """

@@ -1,4 +1,4 @@
-"""Samples of laboratories that the evidence allows: constants, memory, an offset, people.
+"""Samples of laboratories that the evidence allows.
 
 All but the seed of the people are kept in coordinates in which the prior is standard normal, so that they can be moved
 without leaving it: constants on the scales of their priors, with the mean and covariance of the draws.

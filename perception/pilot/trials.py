@@ -1,4 +1,4 @@
-"""Answers of an identification experiment, with their scores: felt and named, named, bits.
+"""Answers of an identification experiment with their scores.
 
 A trial without an answer is a play that was not felt: a miss of *felt and named*, and no part of *named* and of bits.
 Bits are the plug-in estimate, biased upwards by about (cells − rows − columns + 1)/(2·trials·ln 2) with counts of what

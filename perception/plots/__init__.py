@@ -1,1 +1,1 @@
-"""Figures of percepts, confusion, distance, sensitivity."""
+"""Figures of perception."""

@@ -1,4 +1,4 @@
-"""Heat maps of a set's distances or answers: similar icons adjacent, one hue in the order of grey."""
+"""Heat maps of a set's distances or answers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The picture of a perceptual map: icons with separate names, ellipses of people."""
+"""The picture of a perceptual map."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The picture of a result, chosen by its type."""
+"""The choice of a picture by the type of the result."""
 
 from __future__ import annotations
 

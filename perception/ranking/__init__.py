@@ -1,1 +1,1 @@
-"""The ranking of a set: people in batches, on several cores or machines, resumable."""
+"""The ranking of a set."""

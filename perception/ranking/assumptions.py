@@ -1,4 +1,4 @@
-"""The constants on which a ranking depends most, found from its own people and draws without simulation.
+"""The constants on which a ranking depends most.
 
 Contact and outermost layer differ from person to person, so that a regression of the proportion named on people says
 what another contact would do to all of them. The area of contact acts on thresholds alone in the model of perception

@@ -1,4 +1,4 @@
-"""A ranking in batches of people, each with the same numbers wherever it is computed.
+"""A ranking in batches of people that give the same numbers wherever they are computed.
 
 A batch has all icons, since they are compared within a person, and as many people as fit into a bounded memory. That
 depends only on the icons and their length, not on the number of workers.

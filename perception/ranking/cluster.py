@@ -1,4 +1,4 @@
-"""The same batches on a dask.distributed cluster, for jobs that take too long on one machine.
+"""Batches of a ranking on a dask.distributed cluster.
 
 Batches of a worker that dies are computed again by others; the result does not depend on which worker computed it.
 """

@@ -1,4 +1,4 @@
-"""All batches of a ranking, computed here or on a cluster, and pooled in their order."""
+"""All batches of a ranking pooled in their order."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""A ranking as the plain data of `rank --json`, with None for missing values.
+"""A ranking as the plain data of `rank --json`.
 
 Edits, goals and choices that are asked for later are written likewise.
 """

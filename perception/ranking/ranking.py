@@ -1,4 +1,4 @@
-"""The result of `rank`: icons, pairs, confusion matrix."""
+"""The result of `rank`."""
 
 from __future__ import annotations
 

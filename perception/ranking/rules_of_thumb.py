@@ -1,4 +1,4 @@
-"""Rules of thumb, each scored on an icon, a pair or a rig with its margin.
+"""Rules of thumb with their scores.
 
 The thresholds are data (`data/rules.toml`). Rules from the literature and rules of this project
 are distinguished by their source; none of them feeds the model. A rule whose value only the model

@@ -1,4 +1,4 @@
-"""Scores of the icons and pairs of a set, with disagreements between rules and model.
+"""Scores of the icons and pairs of a set.
 
 The score by rules is the share of rules passed, all with the same weight. Nothing in it comes from the model.
 """

@@ -1,4 +1,4 @@
-"""The sensitivity of a prediction to each constant, with the measurement that would reduce the doubt most.
+"""The sensitivity of a prediction to each constant.
 
 The set is predicted with draws of the posterior as a new laboratory would see it, contact and outermost skin layer
 included. Constants that take no part in the set on its rig are left out. Constants of one draw belong together, so that

@@ -1,4 +1,4 @@
-"""Perceptual rows of a sweep over a key of the rig, the site or the age."""
+"""Perceptual rows of a sweep."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Selection: the best few icons, the cheapest edit, the search of a family."""
+"""Selection of better icons."""

@@ -1,4 +1,4 @@
-"""Candidate edits of a pair: generation, screening by the nominal person, bisection.
+"""Candidate edits that may separate a pair.
 
 An edit changes one of the numbers that stand in an icon's statements, or repeats all of them.
 """

@@ -1,4 +1,4 @@
-"""The best k of the ranked icons, ranked again as a set of their own.
+"""The best k of the ranked icons.
 
 Icons are compared at the range of the pool they come from, so that the d′ of a pair is the same in every choice; the
 chosen icons are then evaluated again at their own range.

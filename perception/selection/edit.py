@@ -1,4 +1,4 @@
-"""The cheapest edit that separates a pair: one number of one statement changed, or one repeat added.
+"""The cheapest edit that separates a pair.
 
 An edit costs the |log| of the ratio of the new number to the old, plus a tenth for every second that it adds, so that
 a second is worth about 10 % of a number. Candidates are tried on the nominal person at the range and clock of the set,

@@ -1,4 +1,4 @@
-"""Goals for a set of icons, written in a few words.
+"""Goals for a set of icons in a few words.
 
 A goal has one or more parts, joined by commas: ``felt-and-named >= 90 % for 95 % of people, time <= 10 s``.
 Rankings are judged by it in `thermicon.perception.selection.goal_result`.

@@ -1,4 +1,4 @@
-"""The result of a goal: met or missed, the margin, the obstacles.
+"""The result of a goal.
 
 A part without people is about their mean. One for a share of people is about people and uncertainty of the model
 together: the value that this share of (draw, person) pairs reaches, a person being one of a new laboratory.

@@ -1,4 +1,4 @@
-"""The k of n things whose nearest pair is farthest apart, with proof where an exhaustive search completes.
+"""The k of n things whose nearest pair is farthest apart.
 
 Bisection over the distances that occur finds the largest t for which k things all at least t apart exist. Each t is
 decided by an exhaustive search of cliques; where that takes too long, the answer says that it is not proven.

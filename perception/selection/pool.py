@@ -1,4 +1,4 @@
-"""A pool: icons simulated once on a rig, with the nominal person's percepts and reasons against each icon."""
+"""A pool: icons simulated once on a rig for many choices."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The request for a choice, with the reasons why one cannot be met."""
+"""The request for a choice and the reasons why it cannot be met."""
 
 import math
 from collections.abc import Sequence

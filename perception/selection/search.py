@@ -1,4 +1,4 @@
-"""Search of families for a better set, by variation of their parameters.
+"""Search of families for a better set.
 
 The best set among the listed members of the families is surrounded by slightly different icons; the best set of that
 pool is found as in `choose`, surrounded again, and so on, in shrinking steps: first for the nominal person, then for a

@@ -1,4 +1,4 @@
-"""Identification in the subsets of a pool, with a search for the best, exhaustive or by seeded climbs.
+"""Identification in the subsets of a pool and the search for the best subset.
 
 The same persons, points and noise serve all subsets. A presented icon is felt as its point plus noise and named after
 the nearest point of the subset, as in `confuse`, but the points stay those of the whole pool.

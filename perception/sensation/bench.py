@@ -1,4 +1,4 @@
-"""A bench for experiments: a rig at rest, with stimuli played at its skin or display through the circuit."""
+"""A bench for experiments: a rig at rest on which stimuli are played."""
 
 from __future__ import annotations
 

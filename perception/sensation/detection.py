@@ -1,4 +1,4 @@
-"""Detection: the probability that sensation is reported in a trial, with time and channel of the report.
+"""Detection: the probability that sensation is reported in a trial.
 
 Sensation is its mean plus unit noise of autocorrelation e^(−t²/2τ²). A yes/no observer says yes when its change passes
 a criterion, which is inferred from published answers. The rate of first crossings of a criterion not passed yet is

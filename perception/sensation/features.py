@@ -1,4 +1,4 @@
-"""Features of one trace: peak, attack, delay, directions. Rules and reasons use nothing else."""
+"""Features of one trace. Rules and reasons use nothing else."""
 
 from __future__ import annotations
 

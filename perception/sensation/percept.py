@@ -1,4 +1,4 @@
-"""The percept of a cue: two traces of sensation, its onset, its peak.
+"""The percept of a cue: two traces of sensation with their events.
 
 The receptor clock starts with the cue; the percept clock is later by conduction; the response clock by decision too.
 """

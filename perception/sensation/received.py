@@ -1,4 +1,4 @@
-"""The input of an observer's receptors in a trace: skin under the display, at this observer's depths."""
+"""The input of an observer's receptors in a trace."""
 
 from __future__ import annotations
 

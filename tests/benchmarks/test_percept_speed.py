@@ -1,4 +1,4 @@
-"""Speed of percepts: 10,000 traces of 30 s at 100 Hz.
+"""The speed of percepts.
 
 Run with `pytest -m benchmark tests/benchmarks -s`. What is asked for is under 5 s on two cores.
 """

@@ -1,4 +1,4 @@
-"""How the cost of ranking grows: in proportion to icons × people, from a hundred to a hundred thousand of them.
+"""The growth of the cost of ranking with icons and people.
 
 Run with `pytest -m benchmark tests/benchmarks/test_rank_scale.py -s`; processor time is compared with the line,
 since other programs do not change it much.

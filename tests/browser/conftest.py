@@ -1,4 +1,4 @@
-"""A real browser with JupyterLab on the shipped notebooks, one page of 1280 x 800 per test."""
+"""A real browser with JupyterLab on the shipped notebooks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Control of JupyterLab in a real browser: its servers, a person's actions in a notebook."""
+"""Control of JupyterLab in a real browser."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""The canvas module in a static page without Jupyter, with a model that answers as the test says."""
+"""The canvas module in a static page without Jupyter."""
 
 import base64
 from typing import Any

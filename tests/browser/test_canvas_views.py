@@ -1,4 +1,4 @@
-"""Views of the canvas module in a static page: heat maps, themes, screen readers, unsaved text."""
+"""Views of the canvas module in a static page."""
 
 from typing import Any
 

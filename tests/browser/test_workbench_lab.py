@@ -1,4 +1,4 @@
-"""The workbench in JupyterLab: text, curve, set, export, interruption, speed of a drag."""
+"""The workbench in JupyterLab."""
 
 import re
 import time

@@ -1,4 +1,4 @@
-"""A substitute for pyserial's Serial with a TCS II at its other end, which keeps the rules of both."""
+"""A substitute for pyserial's Serial with a TCS II at its other end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A rig that is known exactly, so that its gate judges one corner, not 65, where the corners are not the point."""
+"""A rig that is known exactly so that its gate judges one corner."""
 
 from thermicon.circuit import Rig
 

@@ -1,4 +1,4 @@
-"""Tables of the inference in docs/: every row of the data files, in readable numbers."""
+"""Tables of the inference in docs/ against the data files."""
 
 import re
 

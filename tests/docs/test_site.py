@@ -1,4 +1,4 @@
-"""The docs site: its sources, its generated parts, a build without warnings."""
+"""The docs site as its build makes it."""
 
 import re
 import shlex

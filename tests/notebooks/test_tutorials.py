@@ -1,4 +1,4 @@
-"""The tutorials: thin, without outputs, executable, with small saved copies."""
+"""The tutorials as they are shipped."""
 
 import os
 import re

@@ -1,4 +1,4 @@
-"""C array: codes in the flash of a microcontroller, as a header file, with one player for all.
+"""C array: a drive's codes as a header file for the flash of a microcontroller.
 
 The player is a header too, with cut-off, watchdog, abort and pauses.
 """

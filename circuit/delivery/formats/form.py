@@ -1,4 +1,4 @@
-"""The interface of a drive file format: its description, its writer's input, the events that it can mark."""
+"""The interface of a drive file format."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

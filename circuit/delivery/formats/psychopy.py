@@ -1,4 +1,4 @@
-"""PsychoPy: a conditions file with one row per icon, drives, a supervising player."""
+"""PsychoPy: drives with a conditions file and a supervising player."""
 
 import csv
 import hashlib

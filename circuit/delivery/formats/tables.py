@@ -1,4 +1,4 @@
-"""CSV: one row per update, with the current that flows, or with the set-point at which a controller holds the display.
+"""CSV: one row per update with the current or with the set-point of a controller.
 
 `thermicon simulate --current FILE --hold` replays the first. For the TCS II, the commands of its serial line, which
 play any profile on all five zones.

@@ -1,4 +1,4 @@
-"""Waveform files: 16-bit WAV for DC-coupled sound outputs, NI TDMS.
+"""Waveform files of drives as WAV or TDMS.
 
 A sound has far more frames than a drive has updates: each update is repeated a whole number of times, and nothing is
 resampled. An output that is not DC-coupled loses every held level.

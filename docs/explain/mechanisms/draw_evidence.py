@@ -1,4 +1,4 @@
-"""Pictures of the inference: worth of each mechanism, left-out predictions, constants, priors."""
+"""Pictures of the inference."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stages of the onset of an icon: skin, receptor, nerve, cord to brain, decision."""
+"""Stages of the onset of an icon from skin to decision."""
 
 from __future__ import annotations
 

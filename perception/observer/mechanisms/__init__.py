@@ -1,1 +1,1 @@
-"""Mechanisms of the observer: one module each, with constants, equation, source."""
+"""Mechanisms of the observer."""

@@ -1,4 +1,4 @@
-"""Adaptation: a level that follows the receptors' input, complete inside the neutral zone.
+"""Adaptation: a level that follows the receptors' input.
 
 The equations of limits, integration and adaptation stand in `kernels.kernels`, which computes all three at once.
 """

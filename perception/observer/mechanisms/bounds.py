@@ -1,4 +1,4 @@
-"""Bounds of quality: no cold above one temperature, no warmth below another."""
+"""Bounds of quality: temperatures beyond which there is no cold or no warmth."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Conduction from the receptor to the brain, before the decision."""
+"""Conduction from the receptor to the brain."""
 
 from dataclasses import dataclass
 

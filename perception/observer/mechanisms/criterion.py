@@ -1,4 +1,4 @@
-"""Criterion: the change of sensation that is answered, with the noise that passes it too."""
+"""Criterion: the change of sensation that is answered."""
 
 from dataclasses import dataclass
 

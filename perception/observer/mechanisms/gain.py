@@ -1,4 +1,4 @@
-"""Gain: the drive that feels like a threshold, with its spread between presentations."""
+"""Gain: the drive that feels like a threshold."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Labels: occasional reports of cold as warm, more frequent after lingering warmth."""
+"""Labels: occasional reports of cold as warm."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""A mechanism: constants as fields, methods for its stages of the chain."""
+"""A mechanism: constants with the stages of the chain that they act on."""
 
 from __future__ import annotations
 

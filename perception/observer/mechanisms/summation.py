@@ -1,4 +1,4 @@
-"""Summation over the area of contact, with two ends.
+"""Summation over the area of contact.
 
 A contact smaller than a few receptive fields stimulates the same receptors (Campero et al. 2001: human cold units
 respond to spots under 5 mm); above about 200 cm² a larger one adds nothing (Hardy & Oppel 1937: 100 and 225 cm²

@@ -1,4 +1,4 @@
-"""Tissue: depths of the receptors, effusivity of living tissue, contact under a thermode."""
+"""Tissue: the skin between display and receptors."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""One thread for linear algebra: a setting of the process, which threads share."""
+"""One thread for linear algebra as a setting of the process."""
 
 import threading
 

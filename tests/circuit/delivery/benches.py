@@ -1,4 +1,4 @@
-"""Benches that play an export without faults: held currents, a prescribed display, loops."""
+"""Benches that play an export without faults."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A share of the export evidence: random drives judged by the gate, their files replayed."""
+"""A share of the export evidence on random drives."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Readers of exported files, written from what each format is documented to be, not from its writer."""
+"""Readers of exported files that know each format by its documentation only."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""Single faults in any play of exported files, prevented as the sidecar demands, on the independent circuit.
+"""Single faults in plays of exported files on the independent circuit.
 
 A play begins from rest, after no power, after many plays, or after a restart. From instants of it a current (or the
 set-point of a loop) hangs until the watchdog acts; a driver is stuck at any current, at its limits, or where it holds

@@ -1,4 +1,4 @@
-"""The circuit once more, from a rig's document alone: dense matrices, exact exponentials, no code of thermicon.
+"""The circuit once more without code of thermicon.
 
 Held current makes the circuit linear: C·dx/dt = −K(I)·x + b(I), with K symmetric, so that C^−½·K·C^−½ has real modes.
 Worlds (a rig as given, every corner of its uncertainty, points inside) stand in the first axis of every array.

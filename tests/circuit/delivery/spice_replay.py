@@ -1,4 +1,4 @@
-"""One world of the independent circuit as a netlist of its own, played by ngspice from a file's currents."""
+"""One world of the independent circuit as a netlist for ngspice."""
 
 import subprocess
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Delivery of cues by devices: quantised, held, slewed, switched, in segments, simulated again."""
+"""Delivery of cues by devices."""
 
 import re
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Devices: shipped profiles, meaning of their numbers, errors of device files."""
+"""Devices and the errors of their files."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Export without a disk: refusals with reasons, contents of files, statements of a sidecar."""
+"""Export without a disk."""
 
 import hashlib
 import json

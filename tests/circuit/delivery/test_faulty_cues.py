@@ -1,4 +1,4 @@
-"""Cues whose faults a coarse check would miss: late steps, short pulses, a weak driver, trains in long holds."""
+"""Cues whose faults a coarse check would miss."""
 
 from pathlib import Path
 

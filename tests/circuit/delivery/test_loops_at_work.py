@@ -1,4 +1,4 @@
-"""Evidence that permitted controllers stay inside every limit, also with single faults.
+"""Evidence that permitted controllers stay inside every limit.
 
 The ordinary suite has one export; `-m slow` has 200 of shipped and made-up cues on shipped rigs, twelve controllers
 each, or as many as THERMICON_EVIDENCE says.

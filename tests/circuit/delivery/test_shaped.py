@@ -1,4 +1,4 @@
-"""Shaped set-points, followed by PI loops on the independent circuit.
+"""Shaped set-points on the independent circuit.
 
 The skin's design is that circuit's own: the cue itself under skin control, otherwise skin under a display that is where
 the cue says at the end of every update. A few exports run always, all of the README and of the shipped six if slow.

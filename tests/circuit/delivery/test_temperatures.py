@@ -1,4 +1,4 @@
-"""Temperatures for a controller around the rig's module, with bounds for an open loop."""
+"""Temperatures for a controller around the rig's module."""
 
 import csv
 import io

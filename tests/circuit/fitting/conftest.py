@@ -1,4 +1,4 @@
-"""A rig with known truth, with its logs."""
+"""A rig with known truth and its logs."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Fits of realistic logs: coarser than the driver, of loops, of means, of slow sensors."""
+"""Fits of realistic logs."""
 
 import math
 import os

@@ -1,4 +1,4 @@
-"""Fits of synthetic logs: recovered truth, named limits of a log."""
+"""Fits of synthetic logs."""
 
 from pathlib import Path
 

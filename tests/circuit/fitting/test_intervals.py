@@ -1,4 +1,4 @@
-"""Intervals of a fit: predicted before the measurement, wider for a skin unlike the rig's."""
+"""Intervals of a fit as predicted before the measurement."""
 
 import math
 import re

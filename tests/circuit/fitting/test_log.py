@@ -1,4 +1,4 @@
-"""Errors of logs, each with file, place, cure."""
+"""Errors of logs with their place and cure."""
 
 import json
 from collections.abc import Mapping, Sequence

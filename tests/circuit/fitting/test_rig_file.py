@@ -1,4 +1,4 @@
-"""The rig file of a fit: the fitted rig with logs, program, intervals for the gate."""
+"""The rig file of a fit."""
 
 from pathlib import Path
 

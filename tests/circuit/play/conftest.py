@@ -1,4 +1,4 @@
-"""A guard on a bench, for all tests of players."""
+"""A guard on a bench for all tests of players."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""A guard on a bench that keeps its rules, in simulated time."""
+"""A guard on a bench that keeps its rules in simulated time."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The lines of a player: an NI channel is free again on every path, a thermode understands the off."""
+"""The lines of a player on hardware that fails."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""The sensors by which a guard watches a display, whatever later calls leave out."""
+"""The sensors by which a guard watches a display."""
 
 import time
 

@@ -1,4 +1,4 @@
-"""What sensors may read: each number from both sides, in the time of its rule."""
+"""Readings that a guard allows and those that it does not."""
 
 import math
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Corners of a rig: values beyond its file, within physical bounds, equal to `Rig.with_` inside them."""
+"""Corners of a rig beyond the values of its file."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""The Peltier module against closed forms, published extractions from data sheets, its three forms in a rig file."""
+"""The Peltier module against closed forms and published data sheets."""
 
 from dataclasses import fields, replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Shipped rigs, their changes, refusals of bad rigs."""
+"""Shipped rigs and refusals of bad ones."""
 
 import json
 import re

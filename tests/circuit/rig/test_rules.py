@@ -1,4 +1,4 @@
-"""Limits at the door of a rig file: tightened freely, loosened only with a reason, never beyond what is published."""
+"""Limits of safety as a rig file may change them."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Shipped sites: rest by closed form, receptor depths in both conventions, notes of a rig."""
+"""Shipped sites at rest."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A thermode rig: a prescribed display above the skin, without current."""
+"""A thermode rig: a prescribed display above the skin."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Every scenario of a drive row by row, as the gate checks it in stretches."""
+"""Every scenario of a drive row by row."""
 
 from dataclasses import dataclass
 

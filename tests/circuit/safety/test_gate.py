@@ -1,4 +1,4 @@
-"""The gate: each rule tripped by a cue of its own, the worst case, records in words."""
+"""The gate: each rule tripped by a cue of its own."""
 
 import json
 import math

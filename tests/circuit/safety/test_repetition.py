@@ -1,4 +1,4 @@
-"""Repeated plays against brute force: cycles, bounds, recovery, pauses."""
+"""Repeated plays against brute force."""
 
 import json
 from dataclasses import replace

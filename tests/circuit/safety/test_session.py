@@ -1,4 +1,4 @@
-"""Sessions against checks by hand: single runs, sums, rates."""
+"""Sessions against checks by hand."""
 
 import math
 from pathlib import Path

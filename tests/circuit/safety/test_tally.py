@@ -1,4 +1,4 @@
-"""A tally of rules over stretches of rows: additive pieces, doses of closed forms."""
+"""A tally of rules over stretches of rows."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Invariants of every run on any mesh: energy balance, electrical power, second order in time.
+"""Invariants of every run on any mesh.
 
 Energy closes to rounding because the trapezoidal rule is the midpoint rule: over a step, every flow is that of the mean
 of the states at both ends. So with a row at each step the balance needs no integration of its own.

@@ -1,4 +1,4 @@
-"""From a cue to its current: the target reached, held without ringing, misses reported."""
+"""The current of a cue and the target that it reaches."""
 
 import numpy as np
 import pytest

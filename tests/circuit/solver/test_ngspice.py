@@ -1,4 +1,4 @@
-"""The same circuit in ngspice, from the exported netlist: an independent solver for the same physics."""
+"""The exported netlist in ngspice: an independent solver for the same physics."""
 
 import subprocess
 import tempfile

@@ -1,4 +1,4 @@
-"""Skin under a thermode as a sum of modes, against the circuit's own stepping."""
+"""Skin under a thermode by modes against the circuit's own stepping."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Readings of any state of the circuit while a drive plays, as weights on three neighbouring states each."""
+"""Readings of the circuit's states while a drive plays."""
 
 import numpy as np
 

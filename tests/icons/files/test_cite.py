@@ -1,4 +1,4 @@
-"""The methods paragraph about a set, with its bibliography."""
+"""The methods paragraph about a set."""
 
 import re
 from pathlib import Path

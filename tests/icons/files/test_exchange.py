@@ -1,4 +1,4 @@
-"""Sets as JSON: what is written has the published schema, whose limits are those of the language."""
+"""Sets as JSON with the published schema."""
 
 import json
 from importlib import resources

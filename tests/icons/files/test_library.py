@@ -1,4 +1,4 @@
-"""Shipped sets as listed, missing files with a reason."""
+"""Shipped sets as listed and reasons for missing files."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The formatter: same meaning, all comments, stable in the next run."""
+"""The formatter of cue texts."""
 
 import re
 from collections import Counter

@@ -1,4 +1,4 @@
-"""Corner points, against numbers worked out by hand: exact where lines are straight, within the tolerance elsewhere."""
+"""Corner points against numbers worked out by hand."""
 
 import math
 from itertools import pairwise

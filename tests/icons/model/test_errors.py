@@ -1,4 +1,4 @@
-"""Every error of the table with code, place, words, sound suggestions."""
+"""Every error of the table with sound suggestions."""
 
 from dataclasses import dataclass
 

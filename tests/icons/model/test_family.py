@@ -1,4 +1,4 @@
-"""A family as a lazy sequence of icons, checked on construction."""
+"""A family as a lazy sequence of checked icons."""
 
 import pytest
 

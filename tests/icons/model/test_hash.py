@@ -1,4 +1,4 @@
-"""The content hash: equal for equal content in every process, different after any change."""
+"""The content hash: equal for equal content and different after any change."""
 
 import os
 import subprocess

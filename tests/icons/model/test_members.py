@@ -1,4 +1,4 @@
-"""Members of a family, sound exactly when each is sound as an icon."""
+"""Members of a family that are sound exactly when each is sound as an icon."""
 
 from itertools import product
 from typing import Any

@@ -1,4 +1,4 @@
-"""Objects built in Python: checks on construction, representation, comparison by value."""
+"""Objects built in Python."""
 
 import copy
 import pickle

@@ -1,4 +1,4 @@
-"""Round trips of random models through text, exact to the last digit."""
+"""Exact round trips of random models through text."""
 
 from dataclasses import replace
 from fractions import Fraction

@@ -1,4 +1,4 @@
-"""Corners of recordings: few, at the true places, within the tolerance."""
+"""Corners of recordings at the true places and within the tolerance."""
 
 from itertools import pairwise
 

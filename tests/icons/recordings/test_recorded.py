@@ -1,4 +1,4 @@
-"""Recordings in CSV files as icons: shapes of tables, readings, every message."""
+"""Recordings in CSV files as icons."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""``thermicon check``: one line per file, canonical layout by ``--fix``."""
+"""``thermicon check`` at the command line."""
 
 import stat
 import subprocess

@@ -1,4 +1,4 @@
-"""``thermicon export``: files, words, exit codes, pauses, hardware, clean refusals."""
+"""``thermicon export`` at the command line."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""``thermicon fit``: output, files, refusals."""
+"""``thermicon fit`` at the command line."""
 
 import re
 from pathlib import Path

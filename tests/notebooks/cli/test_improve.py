@@ -1,4 +1,4 @@
-"""``thermicon improve``: JSON for scripts, text for people, results."""
+"""``thermicon improve`` at the command line."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""The process of the program: start, interruption, closed pipes, ``thermicon doctor``."""
+"""The process of the program and ``thermicon doctor``."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""``thermicon rank``: JSON for scripts, a table for people, the next command, other observers."""
+"""``thermicon rank`` at the command line."""
 
 import json
 from collections.abc import Callable

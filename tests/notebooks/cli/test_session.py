@@ -1,4 +1,4 @@
-"""A session by ``thermicon simulate``: report, files, figure."""
+"""A session by ``thermicon simulate``."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""``thermicon simulate``: trace file, netlist, summary."""
+"""``thermicon simulate`` at the command line."""
 
 import subprocess
 from collections.abc import Callable

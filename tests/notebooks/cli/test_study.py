@@ -1,4 +1,4 @@
-"""``thermicon study``: its folder, verdicts, every refusal."""
+"""``thermicon study`` at the command line."""
 
 import csv
 import json

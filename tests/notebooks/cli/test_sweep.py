@@ -1,4 +1,4 @@
-"""``thermicon sweep``: the table for scripts, summary lines with figures for people."""
+"""``thermicon sweep`` at the command line."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The default rig of a set's site, with its warnings."""
+"""The default rig of a set's site."""
 
 import tomllib
 from pathlib import Path

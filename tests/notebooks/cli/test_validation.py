@@ -1,4 +1,4 @@
-"""``thermicon validate``: table, JSON, the notebook with the same numbers."""
+"""``thermicon validate`` at the command line and in the notebook."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Figures for people: one style of colours, labels, clocks everywhere."""
+"""Figures for people in one style."""
 
 import numpy as np
 import pandas as pd

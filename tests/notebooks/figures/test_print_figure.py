@@ -1,4 +1,4 @@
-"""Figures in print: width, letters, keys, embedded fonts, bytes without dates."""
+"""Figures in print."""
 
 from pathlib import Path
 

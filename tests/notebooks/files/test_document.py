@@ -1,4 +1,4 @@
-"""Documents: edited cue files with undo, redo, versions, unsaved text."""
+"""Documents: cue files under edit."""
 
 import os
 import subprocess

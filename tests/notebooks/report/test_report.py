@@ -1,4 +1,4 @@
-"""``rank --report``: one self-contained page, escaped texts, the same bytes every time."""
+"""``rank --report`` as one self-contained page."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Sentences of reports: singular counts, goals, choices, the reach of few participants."""
+"""Sentences of reports."""
 
 from types import SimpleNamespace as Record
 from typing import Any, cast

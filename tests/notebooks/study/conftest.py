@@ -1,4 +1,4 @@
-"""A small study on a rig that is known exactly, made once for the tests of a file."""
+"""A small study on a rig that is known exactly."""
 
 import csv
 import subprocess

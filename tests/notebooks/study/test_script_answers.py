@@ -1,4 +1,4 @@
-"""Answers of a study survive: kills, torn rows, a full disk, two runs at once."""
+"""Answers of a study that survive every fault."""
 
 import importlib
 import os

@@ -1,4 +1,4 @@
-"""The display of a study's script on simulated hardware: play without blocking, guards, stops."""
+"""The display of a study's script on simulated hardware."""
 
 import importlib
 import itertools

@@ -1,4 +1,4 @@
-"""A study file at the door: every fault in words, all at once, before anything is simulated."""
+"""Every fault of a study file in words before anything is simulated."""
 
 from pathlib import Path
 

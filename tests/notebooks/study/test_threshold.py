@@ -1,4 +1,4 @@
-"""A threshold run: judged levels alone, the threshold of a virtual observer recovered by QUEST+."""
+"""A threshold run at judged levels."""
 
 import importlib
 import json

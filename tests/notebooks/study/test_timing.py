@@ -1,4 +1,4 @@
-"""Gap between icons, landing of the hand, clock of a session."""
+"""Times of a study that simulation determines."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The scene of a text on a rig, with its frame for the canvas."""
+"""The scene of a text on a rig."""
 
 import json
 from dataclasses import replace

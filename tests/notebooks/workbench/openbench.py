@@ -1,4 +1,4 @@
-"""A workbench of a cue file with its bar, for tests of the bar's messages."""
+"""A workbench of a cue file with its bar."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The canvas widget without a browser: what it sends, what it keeps, what it hands on."""
+"""The canvas widget without a browser."""
 
 import base64
 import gzip

@@ -1,4 +1,4 @@
-"""The document bar without a browser: files, icons, rigs, unsaved text, faults.
+"""The document bar without a browser.
 
 What a document does by itself is tested in `tests/notebooks/files/test_document.py`.
 """

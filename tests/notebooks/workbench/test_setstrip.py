@@ -1,4 +1,4 @@
-"""The strip of the design view without a browser: set, goal, current icon."""
+"""The strip of the design view without a browser."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The set view without a browser: rankings, texts, clicks."""
+"""The set view without a browser."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The list of versions without a browser: kept, compared, restored, dropped."""
+"""The list of versions without a browser."""
 
 import re
 from html import unescape

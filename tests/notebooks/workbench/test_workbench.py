@@ -1,4 +1,4 @@
-"""The workbench without a browser: answers to the canvas, knobs."""
+"""The workbench without a browser."""
 
 import time
 from collections.abc import Callable

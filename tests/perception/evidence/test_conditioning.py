@@ -1,4 +1,4 @@
-"""The evidence behind the constants is shown as the shipped tables have it, with a reason for every miss."""
+"""The evidence behind the constants as the shipped tables have it."""
 
 import json
 

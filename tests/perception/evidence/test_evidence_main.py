@@ -1,4 +1,4 @@
-"""``python -m thermicon.perception.evidence``: refusals, results from finished chains."""
+"""``python -m thermicon.perception.evidence`` at the command line."""
 
 from dataclasses import replace
 from pathlib import Path

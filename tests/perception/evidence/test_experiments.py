@@ -1,4 +1,4 @@
-"""Published experiments run as described, whatever their results.
+"""Published experiments run as described.
 
 A test that demanded a published result would be a reason to tune for it: misses are results.
 """

@@ -1,4 +1,4 @@
-"""The search for the maximum: a known optimum, the shipped one again, known constants (slow)."""
+"""The search for the maximum of the posterior."""
 
 import math
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Memory of short pulses: metric distances, effective numbers, a refused bound."""
+"""Memory of short pulses."""
 
 import re
 from itertools import permutations

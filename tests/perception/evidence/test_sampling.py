@@ -1,4 +1,4 @@
-"""Chains, surrogate, diagnostics, all on posteriors in closed form."""
+"""Sampling of posteriors in closed form."""
 
 from dataclasses import dataclass
 from types import SimpleNamespace

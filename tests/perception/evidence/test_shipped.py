@@ -1,4 +1,4 @@
-"""The shipped results: from the shipped inputs, at a maximum of the posterior, sampled, as good as the pages say."""
+"""The shipped results against their inputs."""
 
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""Targets as data: existing records, every rule judged in words."""
+"""Targets of the validation as data."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The validation report: every target with its records, the same for the same seed.
+"""The validation report: every target with its records.
 
 Whether a target holds is not tested: misses are results.
 """

@@ -1,4 +1,4 @@
-"""Rows of the likelihood, played again on a bench, answered by written-out equations.
+"""Rows of the likelihood against written-out equations.
 
 The likelihood plays sums of ramps in few steps. What is compared is one median person, young, of a laboratory without
 an offset.

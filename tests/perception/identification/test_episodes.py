@@ -1,4 +1,4 @@
-"""Remembered episodes: bounds, features, distances."""
+"""Remembered episodes of icons."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The identification task with carry-over, beside a session that plays both icons."""
+"""The identification task with carry-over beside a session that plays both icons."""
 
 from dataclasses import replace
 from typing import Any

@@ -1,4 +1,4 @@
-"""Compiled loops beside their equations written out, at sizes around a block's ends."""
+"""Compiled loops beside their equations written out."""
 
 import math
 from functools import cache

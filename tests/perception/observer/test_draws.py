@@ -1,4 +1,4 @@
-"""Posterior draws: consistent observers, every error of a file."""
+"""Posterior draws as consistent observers and every error of a file."""
 
 from dataclasses import replace
 from pathlib import Path

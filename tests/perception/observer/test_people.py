@@ -1,4 +1,4 @@
-"""People drawn at random, with sourced priors of the constants."""
+"""People drawn at random."""
 
 from dataclasses import fields, replace
 from typing import Any

@@ -1,4 +1,4 @@
-"""Scores of observed answers: closed forms, bias, coverage of the interval."""
+"""Scores of observed answers."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A pilot on made-up laboratories: coverage for left-out people, the next set, measurements."""
+"""Coverage of a pilot's predictions on made-up laboratories."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The whole of `observed` on a made-up laboratory: answers, predictions, files that other commands read."""
+"""The whole of `observed` on a made-up laboratory."""
 
 from pathlib import Path
 

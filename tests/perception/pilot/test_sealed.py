@@ -1,4 +1,4 @@
-"""A sealed prediction: its own best if true, refusals of foreign answers."""
+"""A sealed prediction and refusals of foreign answers."""
 
 import json
 from collections.abc import Callable

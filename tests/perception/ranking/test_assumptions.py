@@ -1,4 +1,4 @@
-"""The most influential assumptions of a ranking: named if they move a result, else not."""
+"""The most influential assumptions of a ranking."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Reasons for a pair's distance: its components, in sentences."""
+"""Reasons for a pair's distance in sentences."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""Icons that are hardly felt are made louder by one number, just enough."""
+"""Icons that are hardly felt and the one number that makes them louder."""
 
 import numpy as np
 import pytest

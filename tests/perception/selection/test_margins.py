@@ -1,4 +1,4 @@
-"""A choice with a goal has the largest margin of the whole goal, so that "no choice meets it" is true."""
+"""The margin of a choice with a goal."""
 
 from itertools import combinations
 

@@ -1,4 +1,4 @@
-"""Stimuli on a bench, with warnings outside the data."""
+"""Stimuli on a bench with warnings outside the data."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The exported C player with a simulated board around it: built by the system's compiler, run through scenarios."""
+"""A simulated board around the exported C player."""
 
 from __future__ import annotations
 

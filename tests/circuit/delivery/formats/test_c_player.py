@@ -1,4 +1,4 @@
-"""The microcontroller player, compiled by the system's C compiler, on a simulated board."""
+"""The microcontroller player on a simulated board."""
 
 import hashlib
 import re

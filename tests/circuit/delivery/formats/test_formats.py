@@ -1,4 +1,4 @@
-"""Files of samples, each read back by a reader that is not our writer."""
+"""Files of samples through independent readers."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""Numbers of the gate as players get them: the strictest of a set, rounded to the safe side."""
+"""Numbers of the gate as players get them."""
 
 import ast
 import hashlib
