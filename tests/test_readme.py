@@ -1,7 +1,8 @@
 """Commands or snippets in README.md and docs/, run again with the shown output.
 
-``python tests/test_readme.py`` regenerates outputs and pictures. Numbers may differ by 20 % and one of the last digit,
-as machines round differently; words, names and order may not. A command that several pages show runs once (`RUNS`).
+``python tests/test_readme.py`` regenerates outputs and pictures; with pages, the outputs of these. Numbers may differ by
+20 % and one of the last digit, as machines round differently; words, names and order may not. A command that several
+pages show runs once (`RUNS`).
 """
 
 import contextlib
@@ -172,9 +173,11 @@ def test_the_index_lists_every_page() -> None:
 
 
 if __name__ == "__main__":
-    for page in PAGES:
+    named = {Path(name).resolve() for name in sys.argv[1:]}
+    for page in (page for page in PAGES if not named or page in named):
         page.write_text(regenerated(page.read_text(encoding="utf-8")), encoding="utf-8")
-    sys.path.insert(0, str(ROOT / "docs" / "explain"))  # the pictures are made beside their pages
-    from mechanisms.draw_images import draw_images
+    if not named:
+        sys.path.insert(0, str(ROOT / "docs" / "explain"))  # the pictures are made beside their pages
+        from mechanisms.draw_images import draw_images
 
-    draw_images(ROOT / "images")
+        draw_images(ROOT / "images")
