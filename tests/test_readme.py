@@ -1,7 +1,7 @@
 """Commands or snippets in README.md and docs/, run again with the shown output.
 
-``python tests/test_readme.py`` regenerates outputs and pictures; with pages, the outputs of these. Numbers may differ by
-20 % and one of the last digit, as machines round differently; words, names and order may not. A command that several
+``python tests/test_readme.py`` regenerates outputs and pictures; with pages, the outputs of these. Numbers may differ
+by 20 % and one of the last digit, as machines round differently; words, names and order may not. A command that several
 pages show runs once (`RUNS`).
 """
 

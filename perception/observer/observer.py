@@ -14,24 +14,10 @@ from typing import Any
 
 from thermicon.base.files.records import RecordError, RecordTable, load_records
 
+from .chain import SensoryChain
 from .channels import CHANNELS, MEMORY_FORMS, VARIABLES, Channel, MemoryForm, Variable, check_variable, source_of
 from .constants import fields_from, objection_to, values_in, values_of
-from .mechanisms.adaptation import Adaptation
-from .mechanisms.age import Age
-from .mechanisms.bounds import Bounds
-from .mechanisms.conduction import Conduction
-from .mechanisms.criterion import Criterion
-from .mechanisms.decision import Decision
-from .mechanisms.gain import Gain
-from .mechanisms.labels import Labels
 from .mechanisms.mechanism import Mechanism
-from .mechanisms.memory import Memory
-from .mechanisms.ratings import Ratings
-from .mechanisms.site import Site
-from .mechanisms.spreads import Spreads
-from .mechanisms.summation import Summation
-from .mechanisms.tissue import Tissue
-from .mechanisms.transducer import Transducer
 
 __all__ = ["CHANNELS", "MEMORY_FORMS", "Channel", "MemoryForm", "Observer", "load_thresholds"]
 DATA = Path(__file__).parents[1] / "data"
@@ -43,15 +29,12 @@ CURE = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class Observer(
-    Tissue, Adaptation, Bounds, Site, Summation, Age, Memory, Ratings, Transducer, Gain,
-    Criterion, Conduction, Decision, Labels, Spreads, Mechanism,
-):  # fmt: skip
+class Observer(SensoryChain):
     """A nominal person: SI units inside, sensation in units of the sensory noise (d′).
 
     An observer is loaded with `Observer.load`, which takes a variant. Its fields are the constants of its mechanisms,
-    which are its bases (one that goes on from others stands before them); those of which each channel has its own are
-    a pair. Each has its source in the parameter file, and its equation in the module of its mechanism.
+    which are the bases of its chain; those of which each channel has its own are a pair. Each has its source in the
+    parameter file, and its equation in the module of its mechanism.
 
     Attributes
     ----------
@@ -143,8 +126,8 @@ class Observer(
         )
 
 
-MECHANISMS = tuple(kind for kind in Observer.__mro__ if issubclass(kind, Mechanism) and kind.equation)[1:]
-"""Every mechanism: the bases of an observer."""
+MECHANISMS = tuple(kind for kind in Observer.__mro__ if issubclass(kind, Mechanism) and vars(kind).get("equation"))
+"""Every mechanism: the bases of the chain."""
 
 
 @lru_cache(maxsize=1)

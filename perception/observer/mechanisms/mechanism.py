@@ -5,21 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..channels import Channel, Variable
+from ..channels import Variable
 
 
 @dataclass(frozen=True, kw_only=True)
 class Mechanism:
     """Part of an observer. Its docstring says what it does; fields that `constant` declares name their priors.
 
-    `equation` is what it computes, `source` where it comes from. A stage of the chain is a method: one that a mechanism
-    overrides goes on from `super()`, so that mechanisms of one stage act one after the other.
+    `equation` is what it computes, `source` where it comes from. Mechanisms override nothing of one another: what
+    follows what stands in `observer.chain`, which calls each.
     """
 
     equation: ClassVar[str] = ""
     source: ClassVar[str] = ""
     variable: Variable = "temperature"
-
-    def sensitivity(self, channel: Channel, area_m2: float | None, site: str | None) -> float:
-        """Sensitivity relative to the hand at the reference area; None: that area, or the hand."""
-        return 1.0

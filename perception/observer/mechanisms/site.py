@@ -17,10 +17,9 @@ class Site(Mechanism):
     source = "Jamal et al. 1985 at the wrist over Stevens & Choo 1998 at the thenar"
     forearm_factor: Both[float] = constant("{} threshold on the forearm")
 
-    def sensitivity(self, channel: Channel, area_m2: float | None, site: str | None) -> float:
-        """The site's part of it: none where nothing is known of the site."""
-        whole = super().sensitivity(channel, area_m2, site)
-        return whole / self.forearm_factor.of(channel) if site is not None and on_forearm(site) else whole
+    def site_factor(self, channel: Channel, site: str | None) -> float:
+        """Thresholds of a site over those of the hand; 1 where nothing is known of the site."""
+        return self.forearm_factor.of(channel) if site is not None and on_forearm(site) else 1.0
 
 
 def on_forearm(site: str) -> bool:

@@ -28,8 +28,8 @@ class Summation(Mechanism):
     reference_area_m2: float = constant("reference area", scale=CM2)
     least_area_m2: float = constant("smallest area that counts", scale=CM2)
 
-    def sensitivity(self, channel: Channel, area_m2: float | None, site: str | None) -> float:
-        """The area's part of it, on which the others go on; a ValueError for an area of 0."""
+    def of_area(self, channel: Channel, area_m2: float | None) -> float:
+        """Sensitivity relative to the reference area (None: that area); a ValueError for an area of 0."""
         if area_m2 is None:
             return 1.0
         if not area_m2 > 0.0:

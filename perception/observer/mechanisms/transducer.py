@@ -6,10 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermicon.base.numbers.arrays import Array, as_rows
+from thermicon.base.numbers.arrays import Array
 
-from ...kernels.parallel import over_rows
-from ..channels import Channel
 from ..constants import constant
 from .gain import Gain
 
@@ -49,33 +47,3 @@ class Transducer(Gain):
         """Increment that adds d′ = 1 to a pedestal when nothing but sensory noise counts, in multiples of threshold."""
         base = np.asarray(pedestal, dtype=np.float64)
         return self.multiple(self.psi(base) + 1.0) - base
-
-    def sensation(
-        self,
-        drive: ArrayLike,
-        channel: Channel,
-        *,
-        area_m2: float | None = None,
-        site: str | None = None,
-        threshold: ArrayLike = 1.0,
-        out: Array | None = None,
-    ) -> Array:
-        """Sensation ψ in d′ units, of shape (..., n_time) like the drive (in `drive_unit`).
-
-        `area_m2` None is the reference area, `site` None the thenar; `threshold` multiplies those of this person, one
-        number or one for each leading index. It is written to `out`, which may be the drive.
-        """
-        from ...kernels import kernels
-
-        rows, shape = as_rows(drive)
-        psi = np.empty(shape) if out is None else out
-        felt = psi.reshape(rows.shape)
-        unit = self.threshold_drive.of(channel) / self.sensitivity(channel, area_m2, site)
-        multiples = np.broadcast_to(np.asarray(threshold, dtype=np.float64), shape[:-1])
-        scale = np.ascontiguousarray(1.0 / (unit * multiples)).reshape(-1)
-
-        def work(part: slice) -> None:
-            kernels.sensation(rows[part], scale[part], self.a, self.p, self.b, felt[part])
-
-        over_rows(work, rows.shape[0], rows.size)
-        return psi
