@@ -8,8 +8,19 @@ from typing import Any
 from thermicon.base.checks.arguments import checked
 from thermicon.icons import Icon
 from thermicon.icons.model.format import statement_text
-from thermicon.icons.model.played import all_played
-from thermicon.icons.model.statements import Broken, Play, Pulse, Ramp, Repeat, Return, Statement, Step, Total, Wave
+from thermicon.icons.model.statements import (
+    Broken,
+    Play,
+    Pulse,
+    Ramp,
+    Repeat,
+    Return,
+    Statement,
+    Step,
+    Total,
+    Wave,
+    all_played,
+)
 
 from ..rig.rig import AnyRig, Rig
 from ..rig.rigfile import RigError

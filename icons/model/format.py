@@ -4,8 +4,21 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from .parameter import Path
-from .played import played_icons
-from .statements import Broken, Current, Hold, Play, Pulse, Ramp, Repeat, Rest, Statement, Step, Total, Wave
+from .statements import (
+    Broken,
+    Current,
+    Hold,
+    Play,
+    Pulse,
+    Ramp,
+    Repeat,
+    Rest,
+    Statement,
+    Step,
+    Total,
+    Wave,
+    played_icons,
+)
 from .units import Control, Kind, quantity
 
 if TYPE_CHECKING:

@@ -16,8 +16,7 @@ from .corners import Corners, Quantity, corners
 from .errors import CueError, CueErrors
 from .format import icon_text, statement_text
 from .motion import TOLERANCE
-from .played import all_played
-from .statements import LEAVES, Play, Repeat, Statement
+from .statements import LEAVES, Play, Repeat, Statement, all_played
 from .units import Control, exact, fault
 
 

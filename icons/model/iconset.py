@@ -17,7 +17,7 @@ from .family import Family
 from .format import set_text
 from .icon import Icon, content_hash
 from .members import Extremes
-from .played import played_icons
+from .statements import played_icons
 from .units import quantity
 from .words import nearest
 

@@ -1,5 +1,6 @@
 """Statements: the frozen parts of an icon in SI units."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from numbers import Integral
 from typing import TYPE_CHECKING, Literal, get_args
@@ -221,6 +222,25 @@ class Repeat:
 LEAVES = (Ramp, Current, Hold, Rest, Return, Total, Step, Pulse, Wave)
 Leaf = Ramp | Current | Hold | Rest | Return | Total | Step | Pulse | Wave
 Statement = Leaf | Repeat | Play
+
+
+def played_icons(body: tuple[Statement, ...]) -> "Iterator[Icon]":
+    """Yield the icons that statements play, in order, those within repeats included."""
+    for part in body:
+        if isinstance(part, Play):
+            yield part.icon
+        elif isinstance(part, Repeat):
+            yield from played_icons(part.body)  # type: ignore[arg-type]
+
+
+def all_played(body: tuple[Statement, ...], seen: set[int] | None = None) -> "Iterator[Icon]":
+    """Yield the icons that statements play, and those that these play in turn, each object once."""
+    seen = set() if seen is None else seen
+    for icon in played_icons(body):
+        if id(icon) not in seen:
+            seen.add(id(icon))
+            yield icon
+            yield from all_played(icon.statements, seen)
 
 
 def _prove_heading(owner: Ramp | Step | Pulse) -> None:

@@ -18,7 +18,7 @@ from thermicon.circuit.solver.inverse import baseline_C
 from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import CueErrors, Icon
 from thermicon.icons.model.changes import Number, line_of, numbers_of, repeated, with_number
-from thermicon.icons.model.played import all_played
+from thermicon.icons.model.statements import all_played
 
 from ..identification.population import run_end_s
 from ..observer.observer import MemoryForm, Observer

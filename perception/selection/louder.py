@@ -9,7 +9,7 @@ import numpy as np
 from thermicon.circuit.solver.inverse import baseline_C
 from thermicon.icons import parse
 from thermicon.icons.model.changes import numbers_of
-from thermicon.icons.model.played import all_played
+from thermicon.icons.model.statements import all_played
 
 from ..ranking.ranking import Ranking
 from ..ranking.scores import objection

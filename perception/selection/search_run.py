@@ -10,7 +10,7 @@ import numpy as np
 from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
 from thermicon.icons import Icon, IconSet
-from thermicon.icons.model.played import played_icons
+from thermicon.icons.model.statements import played_icons
 
 from ..criteria import FELT_FROM
 from ..identification.population import ReceptorTemperatures, memory_dprime, respond
