@@ -157,5 +157,5 @@ def _code_of(rule: Rule) -> int:
     if rule.above_C is not None:
         return WARMER
     if rule.quantity not in CODE_OF:
-        raise ValueError(f"{rule.quantity}: a limit that nothing computes; give the quantity a code in safety/tally.py")
+        raise ValueError(f"{rule.quantity}: a limit that nothing computes; give it a code in safety/quantities.py")
     return CODE_OF[rule.quantity]

@@ -1,18 +1,20 @@
 """Canonical text: a model object written as cue text that reads back to an equal object."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 from .parameter import Path
 from .statements import (
     Broken,
     Current,
     Hold,
+    Leaf,
     Play,
     Pulse,
     Ramp,
     Repeat,
     Rest,
+    Return,
     Statement,
     Step,
     Total,
@@ -80,9 +82,10 @@ class _Writer:
             lines = (self.statement(inner, indent + "  ", (*path, n)) for n, inner in enumerate(part.body))
             count = self.value(part, path, "count", "count")
             return f"{indent}repeat {count} {{\n{chr(10).join(lines)}\n{indent}}}"
+        assert not isinstance(part, Broken), "what could not be read has no text"
         return indent + self.line(part, path)
 
-    def line(self, part: Statement | Broken, path: Path) -> str:
+    def line(self, part: Leaf | Play, path: Path) -> str:
         match part:
             case Ramp(direction=word):
                 return f"{word} {self.goal(part, path)} {self.pace(part, path)}"
@@ -107,7 +110,9 @@ class _Writer:
                 start = "" if part.start in ("warm", "up") else f" starting {part.start}"
                 cut = " cut" if part.cut else ""
                 return f"{part.shape} {self.goal(part, path)} every {period} for {time}{start}{cut}"
-        return f"return {self.pace(part, path)}"
+            case Return():
+                return f"return {self.pace(part, path)}"
+        assert_never(part)
 
 
 def icon_text(icon: "Icon | Family") -> str:
