@@ -42,18 +42,20 @@ def goal_lines(goal: GoalResult, verdict: str = "", ways: Sequence[Way] = ()) ->
     for way in (ways[k] for k in sorted(nearest)):
         after, which = way.after(worst), f"{word_of(worst.part.quantity)}{worst.part.whose}"
         met = "which meets the goal" if way.result.met else "which misses the goal"
-        yield f"  Tried: {way_words(way)}: {which} {_said(worst)} → {'about ' * way.rough}{_said(after)}, {met}"
+        value = f"{_said(worst)} → {'about ' * way.rough}{_said(after)}"
+        yield f"  Tried: {way_words(way, MOST_WAYS)}: {which} {value}, {met}"
     if goal.unreached:
         yield f"  Not reached, and judged as the rig would play them: {', '.join(goal.unreached)}; export refuses them"
 
 
-def way_words(way: Way) -> str:
-    """What was changed, in words."""
+def way_words(way: Way, most: int | None = None) -> str:
+    """What was changed, in words; of more than `most` edits the first ones."""
     if way.choice is not None:
         return f"the best {len(way.choice.icons)}, {', '.join(way.choice.icons)}"
     if way.area_cm2 is not None:
         return f"a contact of {way.area_cm2:g} cm²"
-    return "; ".join(f"in {edit.icon}, {edit.old} → {edit.new}" for edit in way.edits)
+    told = "; ".join(f"in {edit.icon}, {edit.old} → {edit.new}" for edit in way.edits[:most])
+    return told if most is None or len(way.edits) <= most else f"{told}; and {len(way.edits) - most} more edits"
 
 
 def _said(found: GoalPartResult) -> str:
