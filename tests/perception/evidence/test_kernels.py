@@ -103,7 +103,7 @@ def test_transducer_is_one_at_threshold_a_power_below_and_a_logarithm_above(a: f
 def test_summation_has_two_ends() -> None:
     def area_factor(area_cm2: float, reference_cm2: float, exponent: float) -> float:
         areas = {"reference_area_m2": 1e-4 * reference_cm2, "least_area_m2": 0.5e-4}
-        return Summation(area_exponent=Both(exponent, exponent), **areas).sensitivity("cold", 1e-4 * area_cm2, None)
+        return Summation(area_exponent=Both(exponent, exponent), **areas).of_area("cold", 1e-4 * area_cm2)
 
     assert area_factor(0.001, 9.0, 0.7) == area_factor(0.49, 9.0, 0.7) < area_factor(0.51, 9.0, 0.7)
     assert area_factor(400.0, 225.0, 0.9) < 1.2 < 1.4 < area_factor(225.0, 100.0, 0.9)
