@@ -1,4 +1,4 @@
-"""Bounds that hold for every control loop around a module.
+"""Bounds for every control loop around a module.
 
 The skin moves fastest where a loop swings from one cut-off to the other at its current limits. Every temperature of
 skin lies between those of a display held at either cut-off for as long as the second one allows, since more heat in

@@ -100,6 +100,10 @@ class Job:
         own = crowd.people, crowd.seed, trials, crowd.tracking, crowd.memory
         return cls(tuple(icons), rig, end_s, *own, task, other)
 
+    def crowd(self, model: ObserverModel) -> Crowd:
+        """The people who feel and remember the icons."""
+        return Crowd(self.people, self.seed, self.tracking, self.memory, model)
+
     @property
     def at_once(self) -> int:
         """Number of people in a batch."""

@@ -119,8 +119,7 @@ class Ranking(Drawn, Tabled):
     @property
     def crowd(self) -> Crowd:
         """The people who feel and remember the icons."""
-        job = self.job
-        return Crowd(job.people, job.seed, job.tracking, job.memory, self.model)
+        return self.job.crowd(self.model)
 
     @property
     def task(self) -> Task:

@@ -192,8 +192,8 @@ def _louder(ranking: Ranking, missed: GoalResult) -> Iterator[tuple[Edit, ...]]:
     ]
     wanted = max(limits, default=0.0)
     faint = [name for name, share in zip(ranking.labels, ranking.felt.detected, strict=True) if share < wanted]
-    for share in (wanted, 1.0 - ALMOST * (1.0 - wanted)) if faint else ():
-        yield compatible([edit for name in faint if (edit := louder(ranking, name, share))])
+    if faint:
+        yield from louder(ranking, faint, (wanted, 1.0 - ALMOST * (1.0 - wanted)))
 
 
 def _searched(ranking: Ranking, edits: Edits) -> Iterator[list[Edit | NoEdit]]:

@@ -19,7 +19,7 @@ from ..identification.carry_over import CarryOver, task_among
 from ..identification.new_laboratory import DRAWS, NewLaboratory, Nominal, new_laboratory
 from ..identification.population import RATE_HZ
 from ..kernels.parallel import Progress, step_counter
-from ..observer.observer_model import Crowd, ObserverModel
+from ..observer.observer_model import ObserverModel
 from ..ranking.batches import FeltResult, Job
 from ..ranking.ranking import Ranking
 from .appraise import REACHED_BY, Appraisal, appraise, nearest_two
@@ -189,9 +189,10 @@ class Chooser:
         self.pool = self.whole.some(self.places)
         self.must = [k for k, icon in enumerate(self.pool.icons) if icon.name in asked.must]
         self.limits = self.pool.limits(asked.most_s, asked.most_J)
-        self.crowd = Crowd(people, self.job.seed, self.job.tracking, self.job.memory, self.model)
+        self.crowd = replace(self.job, people=people).crowd(self.model)
         self.people = self.model.people(people, self.job.seed)
         self.namings = None
+        self.picks: dict[tuple[int, int], SubsetChoice | None] = {}
         parts = () if self.goal is None else self.goal.of_sets
         if asked.objective != "worst" or parts:
             d, reports = felt.square(felt.pairs[:PEOPLE])[:, self.places][:, :, self.places], felt.reports
@@ -207,8 +208,13 @@ class Chooser:
         return -math.inf if picked is None else self.namings.margin(picked.chosen)
 
     def _picked(self, count: int, restarts: int) -> SubsetChoice | None:
-        middle, asked = self.middle[np.ix_(self.places, self.places)], self.asked
-        return pick(middle, self.namings, count, asked.objective, self.must, self.limits, self.job.seed, restarts)
+        """The choice of so many, picked once for each number of icons and restarts."""
+        if (count, restarts) not in self.picks:
+            middle, asked = self.middle[np.ix_(self.places, self.places)], self.asked
+            self.picks[count, restarts] = pick(
+                middle, self.namings, count, asked.objective, self.must, self.limits, self.job.seed, restarts
+            )
+        return self.picks[count, restarts]
 
     def best(
         self, count: int, draws: int, step: Callable[[], None], restarts: int = RESTARTS, alone: bool = False

@@ -63,8 +63,7 @@ class Frontier(Drawn, Tabled):
     @property
     def crowd(self) -> Crowd:
         """The people who feel and remember the icons."""
-        job = self.job
-        return Crowd(job.people, job.seed, job.tracking, job.memory, self.model)
+        return self.job.crowd(self.model)
 
     @cached_property
     def ranking(self) -> Ranking:

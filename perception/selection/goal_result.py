@@ -250,9 +250,8 @@ def _binding(part: GoalPart, outcome: SetOutcome) -> str:
     if part.quantity == "felt_and_named":
         worst = int(outcome.each_felt_and_named.argmin())
         share = outcome.detected[worst]
-        if 1.0 - share > 1.0 - outcome.each_felt_and_named[worst] / max(
-            share, 1e-9
-        ):  # more plays are not felt than misnamed
+        named = outcome.each_felt_and_named[worst] / max(share, 1e-9)
+        if 1.0 - share > 1.0 - named:  # more plays are not felt than misnamed
             return f"{outcome.names[worst]} is felt in {100.0 * share:.0f} % of plays"
     if part.quantity in ("felt_and_named", "named", "bits", "d_prime"):
         apart = part.quantity == "d_prime"

@@ -24,8 +24,7 @@ def ranking(rig: Rig) -> Ranking:
 
 @pytest.mark.parametrize("wanted", [0.5, 0.9, 0.99])
 def test_one_line_is_changed_just_so_far_that_the_icon_is_felt(ranking: Ranking, rig: Rig, wanted: float) -> None:
-    edit, nominal = louder(ranking, "faint", wanted), ranking.model.nominal
-    assert edit is not None
+    (edit,), nominal = next(louder(ranking, ["faint"], [wanted])), ranking.model.nominal
     before, after = (str(icon).splitlines() for icon in (parse(FAINT)["faint"], edit.edited))
     changed = [(a.strip(), b.strip()) for a, b in zip(before, after, strict=True) if a != b]
     assert changed == [(edit.old, edit.new)] and edit.old.startswith("cool by 0.2 °C")
@@ -38,8 +37,8 @@ def test_one_line_is_changed_just_so_far_that_the_icon_is_felt(ranking: Ranking,
 
 
 def test_what_is_played_by_another_icon_or_cannot_be_felt_so_often_stays(ranking: Ranking) -> None:
-    assert louder(ranking, "loud", 0.9) is None
-    assert louder(ranking, "faint", 1.0) is None
+    assert [*louder(ranking, ["loud"], [0.9])] == [()]
+    assert [*louder(ranking, ["faint"], [1.0])] == [()]
 
 
 def test_what_is_left_out_is_said_with_the_digits_that_its_limit_takes(rig: Rig) -> None:
