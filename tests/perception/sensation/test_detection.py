@@ -177,3 +177,13 @@ def test_trials_differ_in_gain_and_decision(observer: Observer) -> None:
         found = detect(psi, 0 * psi, 0.01, person, decision_s=0.3)
         spread.append(reported_by(found, 0.84) - reported_by(found, 0.16))
     assert min(spread[1:]) > 1.2 * spread[0]
+
+
+def test_trials_differ_in_what_follows_conduction_and_not_in_conduction(observer: Observer) -> None:
+    """A path that is 0.5 s longer makes the quick and the slow answers later by 0.5 s alike."""
+    psi, varied = 8.0 * np.arange(0.0, 3.0, 0.01), replace(observer, decision_noise=0.6)
+    near, far = (detect(psi, 0 * psi, 0.01, varied, path_m=path_m, decision_s=0.3) for path_m in (0.2, 1.2))
+    later = [reported_by(far, share) - reported_by(near, share) for share in (0.16, 0.5, 0.84)]
+    assert later == pytest.approx([1.0 / observer.velocity_m_per_s.cold] * 3, abs=0.01)
+    slow = detect(psi, 0 * psi, 0.01, varied, path_m=0.2, decision_s=0.8)
+    assert reported_by(slow, 0.84) - reported_by(slow, 0.16) > 1.5 * (reported_by(near, 0.84) - reported_by(near, 0.16))
