@@ -124,6 +124,20 @@ def pilot_command(
         return
     people = _numbers(participants or PARTICIPANTS, "--participants", 2, MOST_PARTICIPANTS)
     times = _numbers(trials or TRIALS, "--trials", 1, MOST_TRIALS)
+    plan_experiment(files, people, times, wanted, crowd, rig, draws or USUAL_PLAN_DRAWS, json)
+
+
+def plan_experiment(
+    files: Sequence[str],
+    participants: tuple[int, ...],
+    trials: tuple[int, ...],
+    wanted: float | None,
+    crowd: ObserverOptions,
+    rig: RigOptions,
+    draws: int,
+    json: Path | None,
+) -> None:
+    """Simulate whole experiments with one set, or with two that are to be distinguished; show and write the plan."""
     if len(files) > 2:
         raise usage("a plan is for one set, or for two that are to be distinguished", "FILE")
     if wanted is not None and not 0.0 < wanted < 100.0:
@@ -142,22 +156,22 @@ def pilot_command(
     where = rig.load(sets[0], files[0])
     model = crowd.load(where, NEEDS)
     with progress_bar("simulating experiments") as progress:
-        found = plan(
+        planned = plan(
             sets[0],
             where,
             *sets[1:],
-            participants=people,
-            trials=times,
+            participants=participants,
+            trials=trials,
             wanted=None if wanted is None else wanted / 100.0,
-            draws=draws or USUAL_PLAN_DRAWS,
+            draws=draws,
             **crowd.asked,
             observer=model,
             progress=progress,
         )
     if json is not None:
-        write_text(found.to_json() + "\n", json)
+        write_text(planned.to_json() + "\n", json)
     if json != STDOUT:
-        show(plan_report(found, [Path(name).name for name in files]))
+        show(plan_report(planned, [Path(name).name for name in files]))
 
 
 def open_sealed(

@@ -142,12 +142,12 @@ def chosen(
     return report_of(
         icons,
         rig,
-        how.pop("parameters"),
+        how["parameters"],
         edits="all" if edits or (count is None and goal is None) else "worst" if count is None else "none",
         make_edits=count is None,
         choosing=None if count is None else Selection(count, objective, tuple(must or ()), *limits),
         warnings=tuple(rig.warnings),
-        **how,
+        **{name: value for name, value in how.items() if name != "parameters"},
     )
 
 

@@ -8,9 +8,9 @@ one that comes nearest to the goal, or has the best objective, is the result.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Unpack
+from typing import Self, Unpack
 
 import numpy as np
 
@@ -147,31 +147,25 @@ def search(
     True
     """
     icons, crowd = set_of(icons), crowd.but(**words)
-    rig, seed, wanted = Rig.of(rig, icons.context.site), crowd.seed, Goal.parse(goal) if isinstance(goal, str) else goal
+    rig, wanted = Rig.of(rig, icons.context.site), Goal.parse(goal) if isinstance(goal, str) else goal
+    model = crowd.model
+    crowd = crowd.but(observer=model)  # a file is read once
     if wanted is not None:
         wanted.check_count(count)
-    if count is None and wanted is not None and wanted.of("count") is not None:
-        count = int(wanted.of("count") or 0)
-    run, model = SearchRun(icons, count), crowd.model
-    crowd = crowd.but(observer=model)  # a file is read once
-    nominal = Evaluator(rig, objective, crowd.memory, seed, model.nominal, crowd.tracking, wanted)
-    first = model.people(PEOPLE, seed)
-    few = replace(nominal, crowd=first)
-    draws, parts = model.draw_count(parameters, DRAWS), list[GoalPart]()
+        if count is None and (least := wanted.of("count")) is not None:
+            count = int(least)
+    run, draws, parts = SearchRun(icons, count), model.draw_count(parameters, DRAWS), list[GoalPart]()
     if wanted is not None:
         wanted.check_draws(draws)
         # Those for a share of people first.
         judged = [part for part in wanted.parts if part in wanted.of_sets or part.quantity == "detected"]
         parts = sorted(judged, key=lambda part: (part.people is None, -(part.people or 0.0)))
-    rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
+    nominal = Evaluator(rig, objective, crowd.memory, crowd.seed, model.nominal, crowd.tracking, wanted)
+    few = replace(nominal, crowd=model.people(PEOPLE, crowd.seed))
+    rng = np.random.default_rng(np.random.SeedSequence([crowd.seed, 8]))
 
     def as_set(of: list[Candidate]) -> IconSet:
-        return set_of_run(icons, of, rig, FOUND, FOUND, f"seed {seed}")
-
-    def as_written(scores: Appraisal, of: list[Candidate]) -> Appraisal:
-        names = dict(zip((candidate.icon.name for candidate in of), names_of(of), strict=True))
-        a, b = scores.worst_pair
-        return replace(scores, worst_pair=(names[a], names[b]))
+        return set_of_run(icons, of, rig, FOUND, FOUND, f"seed {crowd.seed}")
 
     def tell(tried: int, held: list[Candidate]) -> None:
         if progress is not None:
@@ -182,52 +176,74 @@ def search(
     start = run.start(few, rng)  # as a choice would
     tell(run.tried, start)
     rounds = max(0, round((evaluations - run.tried) / (BATCH * run.free)))
-    last = max(1, rounds // PER_ROUND)
-    held = run.improve(start, nominal, rounds, BATCH, rng, WIDEST, tell)
-    screened = run.tried
-    best = run.improve(max((start, held), key=few.score), few, last, REFINING, rng, REFINED, tell)
-    different = {frozenset(one.icon.name for one in each): each for each in (start, best, held)}
+    climbed = run.improve(start, nominal, rounds, BATCH, rng, WIDEST, tell)
+    screened, higher = run.tried, max((start, climbed), key=few.score)
+    refined = run.improve(higher, few, max(1, rounds // PER_ROUND), REFINING, rng, REFINED, tell)
+    different = {frozenset(one.icon.name for one in each): each for each in (start, refined, climbed)}
     finalists = list(different.values())
-    sets = [tuple(candidate.icon for candidate in candidates) for candidates in finalists]
-    scores = [appraise(each, rig, crowd=crowd) for each in sets]
-    persons: list[dict[str, Array]] = [{} for _ in sets]
-    if any(part.people is not None for part in parts):
-        ranked = [rank(one, rig, crowd=crowd, parameters=draws) for one in sets]
-        persons = [one.new_laboratory.persons for one in ranked if one.new_laboratory is not None]
-    place = max(range(len(sets)), key=lambda k: _merit(parts, objective, scores[k], persons[k]))
-    best, after = finalists[place], scores[place]
+    appraised = Appraised.all_of(finalists, rig, crowd, draws if any(part.people is not None for part in parts) else 0)
+    best = max(appraised, key=lambda each: each.merit(parts, objective))
     return SearchResult(
-        found=as_set(best),
+        found=as_set(best.candidates),
         start=tuple(as_set(start)),
-        before=as_written(scores[0], start),
-        after=as_written(after, best),
+        before=appraised[0].as_written,
+        after=best.as_written,
         objective=objective,
-        seed=seed,
+        seed=crowd.seed,
         evaluations=screened,
         refined=run.tried - screened,
-        at_ends=at_ends(best),
+        at_ends=at_ends(best.candidates),
         finalists=len(finalists),
         chosen_by=" and ".join(word_of(part.quantity) + part.whose for part in parts) or objective,
     )
 
 
-def _merit(
-    parts: Sequence[GoalPart], objective: Objective, scores: Appraisal, persons: dict[str, Array]
-) -> tuple[float, ...]:
-    """The order of sets: the least margin of the goal, then values of its parts, then of the objective.
+@dataclass(frozen=True, slots=True)
+class Appraised:
+    """A set that is held at the end, appraised by all people.
 
-    `persons` are values of single people of all draws, as in `rank`, for parts about a share of people.
+    `persons` are values of single people of all draws, as in `rank`, for parts of a goal about a share of people.
     """
-    means = {
-        "felt_and_named": scores.felt_and_named,
-        "named": scores.proportion_correct,
-        "detected": float(scores.detected.min()),
-        "bits": scores.information_bits,
-        "d_prime": scores.d_prime,
-    }
-    values = [
-        means[part.quantity] if part.people is None else float(np.quantile(persons[part.quantity], 1.0 - part.people))
-        for part in parts
-    ]
-    margins = [float(part.margin(value)) for part, value in zip(parts, values, strict=True)]
-    return (min(margins, default=0.0), *values, scores.value(objective))
+
+    candidates: list[Candidate]
+    scores: Appraisal
+    persons: Mapping[str, Array]
+
+    @classmethod
+    def all_of(cls, finalists: Sequence[list[Candidate]], rig: Rig, crowd: Crowd, draws: int) -> list[Self]:
+        """Appraise several sets, and single people where there are draws."""
+        appraised = []
+        for candidates in finalists:
+            icons, persons = tuple(candidate.icon for candidate in candidates), dict[str, Array]()
+            scores = appraise(icons, rig, crowd=crowd)
+            if draws and (known := rank(icons, rig, crowd=crowd, parameters=draws).new_laboratory) is not None:
+                persons = dict(known.persons)
+            appraised.append(cls(candidates, scores, persons))
+        return appraised
+
+    @property
+    def as_written(self) -> Appraisal:
+        """The scores, with the worst pair by the names that a file gives."""
+        of = self.candidates
+        names = dict(zip((candidate.icon.name for candidate in of), names_of(of), strict=True))
+        a, b = self.scores.worst_pair
+        return replace(self.scores, worst_pair=(names[a], names[b]))
+
+    def merit(self, parts: Sequence[GoalPart], objective: Objective) -> tuple[float, ...]:
+        """The order of sets: the least margin of the goal, then values of its parts, then of the objective."""
+        scores = self.scores
+        means = {
+            "felt_and_named": scores.felt_and_named,
+            "named": scores.proportion_correct,
+            "detected": float(scores.detected.min()),
+            "bits": scores.information_bits,
+            "d_prime": scores.d_prime,
+        }
+        values = [
+            means[part.quantity]
+            if part.people is None
+            else float(np.quantile(self.persons[part.quantity], 1.0 - part.people))
+            for part in parts
+        ]
+        margins = [float(part.margin(value)) for part, value in zip(parts, values, strict=True)]
+        return (min(margins, default=0.0), *values, scores.value(objective))

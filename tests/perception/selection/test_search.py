@@ -122,8 +122,8 @@ def test_of_the_sets_held_at_the_end_the_goal_chooses(
     small: IconSet, rig: Rig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     merits: list[tuple[float, ...]] = []
-    true_merit = searching._merit
-    monkeypatch.setattr(searching, "_merit", lambda *given: merits.append(true_merit(*given)) or merits[-1])
+    true_merit = searching.Appraised.merit
+    monkeypatch.setattr(searching.Appraised, "merit", lambda *given: merits.append(true_merit(*given)) or merits[-1])
     goal = "named >= 99 % for 95 % of people"
     result = search(small, rig, goal=goal, parameters=8, count=4, objective="named", evaluations=150, people=12, seed=4)
     assert result.finalists == len(merits) > 1
