@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from thermicon.base.checks.arguments import checked
+from thermicon.base.checks.arguments import InputError, checked
 from thermicon.perception.ranking.swept import AGE, ALL, MEASURES, OF_95, SITE
 
 from ..files.outputs import TRACE_SUFFIXES, check_output, check_separate
@@ -260,7 +261,8 @@ def outside_lines(key: str, values: Sequence[float | str], icons: IconSet, rig: 
     for value in values:
         if key == AGE:
             beyond += outside_age(float(value))
-        else:
+            continue
+        with suppress(InputError):  # a rig that cannot be is a row with its reason
             beyond += outside_setting(icons.context.baseline_C, rig_under(rig, {key: value}))
     if not beyond:
         return []

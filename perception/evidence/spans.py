@@ -18,7 +18,7 @@ from ..observer.channels import Channel
 from ..observer.constants import Both
 from ..observer.observer import Observer
 from ..observer.priors import LABORATORIES
-from ..sensation.coverage import RESPECTS, Span
+from ..sensation.coverage import RESPECTS, EvidenceSpan
 
 FEW = 2
 """People in the laboratory: who is asked changes nothing of what is played."""
@@ -50,7 +50,7 @@ class WritingLaboratory(Laboratory):
         return super().gain(channel, area_cm2, laboratory, site, age_years)
 
 
-def spans_of(experiments: Iterable[Simulated] = EXPERIMENTS) -> tuple[Span, ...]:
+def spans_of(experiments: Iterable[Simulated] = EXPERIMENTS) -> tuple[EvidenceSpan, ...]:
     """The span of each respect over some experiments, with the experiments at its ends."""
     offsets = dict.fromkeys(LABORATORIES, Both(0.0, 0.0))
     values: dict[str, list[tuple[float, str]]] = {}
@@ -60,4 +60,4 @@ def spans_of(experiments: Iterable[Simulated] = EXPERIMENTS) -> tuple[Span, ...]
         ages = [("age", years) for name in names for years in AGES_YEARS.get(name, ())]
         for respect, value in (*laboratory.played, *ages):
             values.setdefault(respect, []).append((value, ", ".join(names)))
-    return tuple(Span(name, unit, *min(values[name]), *max(values[name])) for name, unit in RESPECTS.items())
+    return tuple(EvidenceSpan(name, unit, *min(values[name]), *max(values[name])) for name, unit in RESPECTS.items())

@@ -47,7 +47,7 @@ RESPECTS: Mapping[str, str] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class EvidenceSpan:
     """What the experiments varied in one respect; `low_of` and `high_of` name those at its ends."""
 
     respect: str
@@ -66,8 +66,7 @@ class Span:
         return f"{subject} {shown} {self.unit} (the evidence: {self.low:.3g} to {self.high:.3g} {self.unit})"
 
 
-@lru_cache(maxsize=1)
-def load_spans() -> Mapping[str, Span]:
+def load_spans() -> Mapping[str, EvidenceSpan]:
     """The shipped spans by respect.
 
     >>> load_spans()["rest"].low
@@ -76,7 +75,7 @@ def load_spans() -> Mapping[str, Span]:
     with (DATA / "spans.csv").open(encoding="utf-8", newline="") as file:
         rows = csv.DictReader(line for line in file if not line.startswith("#"))
         return {
-            row["respect"]: Span(
+            row["respect"]: EvidenceSpan(
                 row["respect"], row["unit"], float(row["low"]), row["low_of"], float(row["high"]), row["high_of"]
             )
             for row in rows
@@ -98,12 +97,12 @@ def outside_data(trace: Trace) -> tuple[str, ...]:
         ("the warm receptor", trace.warm_receptor_C),
     )
     found = [*_temperatures(table.one("temperature"), places, trace.time_s), *_rates(table.one("rate"), places, trace)]
-    return (*_setting(float(trace.skin_C[0]), trace.area_m2), *_course(trace), *found, *outside_site(trace.site))
+    return (*_setting(float(trace.skin_C[0]), trace.area_m2, trace.site), *_course(trace), *found)
 
 
 def outside_setting(baseline_C: float | None, rig: Rig) -> tuple[str, ...]:
-    """A sentence where skin rests, or touches a contact, as in no experiment; without a baseline as the rig has it."""
-    return _setting(rig.skin.rest_C if baseline_C is None else baseline_C, rig.contact.area_m2)
+    """A sentence on rest, contact and site, where no experiment had them; None: skin rests as the rig has it."""
+    return _setting(rig.skin.rest_C if baseline_C is None else baseline_C, rig.contact.area_m2, rig.site)
 
 
 def outside_age(age_years: float) -> tuple[str, ...]:
@@ -111,10 +110,10 @@ def outside_age(age_years: float) -> tuple[str, ...]:
     return _joined(load_spans()["age"].outside(age_years, "people are aged"))
 
 
-def _setting(rest_C: float, area_m2: float) -> tuple[str, ...]:
+def _setting(rest_C: float, area_m2: float, site: str) -> tuple[str, ...]:
     spans = load_spans()
     rest = spans["rest"].outside(rest_C, "the skin rests at", REST_SLACK_K)
-    return _joined(rest, spans["area"].outside(area_m2 / CM2, "the contact is"))
+    return _joined(rest, spans["area"].outside(area_m2 / CM2, "the contact is"), *outside_site(site))
 
 
 def _course(trace: Trace) -> tuple[str, ...]:

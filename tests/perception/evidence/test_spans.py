@@ -10,15 +10,15 @@ from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.experiments.published import EXPERIMENTS, Key
 from thermicon.perception.observer.draws_file import current_inputs
 from thermicon.perception.observer.observer import DATA
-from thermicon.perception.sensation.coverage import RESPECTS, Span, load_spans
+from thermicon.perception.sensation.coverage import RESPECTS, EvidenceSpan, load_spans
 
 
 @pytest.fixture(scope="module")
-def shipped() -> dict[str, Span]:
+def shipped() -> dict[str, EvidenceSpan]:
     return {span.respect: span for span in spans_of()}
 
 
-def test_the_table_is_that_of_the_shipped_experiments(shipped: dict[str, Span]) -> None:
+def test_the_table_is_that_of_the_shipped_experiments(shipped: dict[str, EvidenceSpan]) -> None:
     cure = "run python -m thermicon.perception.evidence observer"
     assert load_spans().keys() == shipped.keys() == RESPECTS.keys(), cure
     for respect, span in load_spans().items():
@@ -28,7 +28,7 @@ def test_the_table_is_that_of_the_shipped_experiments(shipped: dict[str, Span]) 
 
 
 @pytest.mark.parametrize("end", ["low", "high"])
-def test_another_experiment_moves_every_span_to_its_conditions(shipped: dict[str, Span], end: str) -> None:
+def test_another_experiment_moves_every_span_to_its_conditions(shipped: dict[str, EvidenceSpan], end: str) -> None:
     """Somebody rests, touches, moves and lives beyond the others: each span ends there, and says with whom."""
     low = end == "low"
     rest_C, area_cm2, size_K, duration_s, age = (20.0, 0.3, 0.01, 0.5, 18.0) if low else (38.0, 40.0, 30.0, 60.0, 90.0)

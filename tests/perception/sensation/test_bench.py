@@ -115,8 +115,8 @@ def test_a_ranking_carries_it() -> None:
     text = "cue 1\nset s { control skin }\nicon a { cool by 2 °C at 1 °C/s; hold for 1 s }"
     ranking = rank(parse(text), Rig.load("fingertip"), people=1, parameters=0)
     said = [
-        "the contact is 1.5 cm² (the evidence: 1.96 to 9.8 cm²)",
-        "no detection threshold is on record for the fingertip: those of the thenar are used",
+        "the contact is 1.5 cm² (the evidence: 1.96 to 9.8 cm²), "
+        "no detection threshold is on record for the fingertip: those of the thenar are used"
     ]
     assert list(ranking.icons[0].outside_data) == said
     assert ranking.to_dict()["icons"][0]["outside_data"] == said
