@@ -39,7 +39,7 @@ class Adaptation(Bounds):
         """Drive (never negative, in `drive_unit`) of one channel for what reaches its receptors, of the same shape.
 
         `received` (..., n_time) is °C at the depth of the channel or, as `variable` says, W/m² into the skin there. At
-        the first sample the receptor is adapted as far as the neutral zone allows.
+        the first sample nothing is felt: a receptor that rests outside the neutral zone counts as resting at its end.
         """
         from ...kernels.kernels import adapted_drive
 
