@@ -8,7 +8,7 @@ from tests.notebooks.conftest import Cli
 
 SET = """cue 1
 set rested {{ site thenar; control skin; baseline {baseline_C} °C }}
-icon warmer {{ warm by 2 °C at 1 °C/s; hold for 1 s; return at 1 °C/s }}
+icon warmer {{ warm by 4 °C at 1 °C/s; hold for 1 s; return at 1 °C/s }}
 icon colder {{ cool by 2 °C at 1 °C/s; hold for 1 s; return at 1 °C/s }}
 """
 SAID = "the skin rests at 28 °C (the evidence: 30 to 34 °C)"
