@@ -28,11 +28,13 @@ def _adapted_drive(
     softness: float,
     low: float,
     high: float,
+    coldest_rest: float,
+    warmest_rest: float,
     integration_s: float,
     adaptation_s: float,
     drive: Any,
 ) -> None:
-    """Receptor drive (rows, n_time) in K, 0 at the first sample: rest outside the neutral zone counts as at its end."""
+    """Receptor drive (rows, n_time) in K, 0 at rest, the first sample; rest beyond its ends counts as at the nearer."""
     # Weights of the old state, the old and the new input over one step.
     decay_i, decay_a = math.exp(-dt / integration_s), math.exp(-dt / adaptation_s)
     mean_i, mean_a = (
@@ -43,7 +45,7 @@ def _adapted_drive(
     quality = np.empty(samples)
     for row in range(temperature.shape[0]):
         rest = temperature[row, 0]
-        shift = min(max(rest, low), high) - rest
+        shift = min(max(rest, coldest_rest), warmest_rest) - rest
         for t in range(samples):
             felt = temperature[row, t] + shift
             x = sign * (felt - limit) / softness

@@ -10,9 +10,11 @@ from thermicon.icons import parse
 from thermicon.perception import Observer, perceive
 from thermicon.perception.experiments.measure import Condition, Setting, logs_of
 from thermicon.perception.observer.channels import Channel
+from thermicon.perception.observer.mechanisms.adaptation import RESTS_C
+from thermicon.perception.sensation.coverage import load_spans
+from thermicon.perception.sensation.received import received
 
 SITES = ("thenar", "forearm", "hand-dorsum", "fingertip")
-RESTS_C = range(24, 41)
 SIZES_K = np.geomspace(0.005, 16.0, 60)
 CONDITIONS = (("forced_choice", None, 1.0, 3.0), ("yes_no", None, 2.5, 1.5), ("limits", 12.0, 1.0, 0.0))
 
@@ -36,11 +38,23 @@ def test_a_question_with_more_haste_needs_a_larger_change_wherever_skin_rests(si
 
 
 @pytest.mark.parametrize("channel", ["cold", "warm"])
-def test_thresholds_do_not_jump_where_the_neutral_zone_ends(channel: Channel) -> None:
-    """Skin is a little warmer at its receptors than at its surface, so that the zone ends a little earlier there."""
-    for below_C, above_C in ((29.0, 30.0), (36.0, 37.0)):
-        below, above = thresholds_K("thenar", channel, below_C), thresholds_K("thenar", channel, above_C)
-        assert np.abs(np.log(above) - np.log(below)).max() < np.log(1.5)
+def test_thresholds_neither_jump_nor_grow_where_no_experiment_rested(channel: Channel) -> None:
+    """Receptors are a little warmer than the skin over them, so that the ends of the evidence lie a little lower."""
+    cool, end, warm, warmer = (np.log(thresholds_K("thenar", channel, rest_C)) for rest_C in (28.0, 30.0, 34.0, 35.0))
+    assert max(np.abs(end - cool).max(), np.abs(warmer - warm).max()) < np.log(1.5)
+    assert thresholds_K("thenar", channel, 25.0) == pytest.approx(np.exp(cool), rel=1e-3)
+    assert thresholds_K("thenar", channel, 40.0) == pytest.approx(np.exp(warmer), rel=1e-3)
+
+
+def test_receptors_rest_where_they_did_in_the_experiments() -> None:
+    """Under skin at the ends of the span, on every shipped rig; outside it the nearer end is assumed."""
+    rest, observer = load_spans()["rest"], Observer.load()
+    for site in SITES:
+        for skin_C in (rest.low, rest.high):
+            icons = parse(f"cue 1; set s {{ control skin; baseline {skin_C} °C }}; icon a {{ hold for 1 s }}")
+            depths = received(simulate(icons["a"], Rig.load(site)), observer)
+            assert all(RESTS_C[0] <= float(course[0]) <= RESTS_C[1] for course in depths), (site, skin_C)
+    assert (rest.low, rest.high + 0.25) == RESTS_C
 
 
 def quality(site: str, rest_C: float, way: str, size_K: float) -> str | None:

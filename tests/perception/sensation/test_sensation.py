@@ -52,9 +52,11 @@ def test_adaptation_is_complete_inside_the_neutral_zone_only(
     assert far[-1] == pytest.approx(left, abs=4e-5 * left)
 
 
-@pytest.mark.parametrize(("rest", "end"), [(22.0, 30.0), (29.9, 30.0), (36.1, 36.0), (41.0, 36.0)])
-def test_who_rests_outside_the_zone_feels_what_is_felt_at_its_end(observer: Observer, rest: float, end: float) -> None:
-    """Nothing at rest, and a change from there as the same change from the end of the zone."""
+@pytest.mark.parametrize(("rest", "end"), [(22.0, 30.0), (29.9, 30.0), (34.35, 34.25), (41.0, 34.25)])
+def test_who_rests_as_nobody_in_an_experiment_feels_what_is_felt_at_the_nearer_end(
+    observer: Observer, rest: float, end: float
+) -> None:
+    """Nothing at rest, and a change from there as the same change from the end."""
     change, person = np.interp(np.arange(0.0, 8.0, 0.01), [1.0, 2.0, 5.0, 6.0], [0.0, 3.0, 3.0, 0.0]), limited(observer)
     for channel, sign in zip(CHANNELS, (-1.0, 1.0), strict=True):
         assert person.drive(np.full(50, rest), 0.01, channel).max() == 0.0
@@ -70,8 +72,8 @@ def limited(observer: Observer, softness_K: float = 0.1) -> Observer:
 
 def test_there_is_no_cold_above_its_limit_and_no_warmth_below(observer: Observer) -> None:
     t = np.arange(0.0, 6.0, 0.01)
-    fall = np.interp(t, [0.0, 2.0], [35.9, 33.5])
-    assert observer.drive(fall, 0.01, "cold").max() > 2.0
+    fall = np.interp(t, [0.0, 2.0], [34.2, 33.5])
+    assert observer.drive(fall, 0.01, "cold").max() > 0.6
     assert limited(observer).drive(fall, 0.01, "cold").max() < 0.01
     rise = np.interp(t, [0.0, 2.0], [30.0, 30.5])
     assert limited(observer).drive(rise, 0.01, "warm").max() < 0.01
