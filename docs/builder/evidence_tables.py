@@ -23,6 +23,7 @@ from thermicon.perception.evidence.rows import load_evidence, load_rows
 from thermicon.perception.observer.constants import names_of
 from thermicon.perception.observer.observer import MECHANISMS, load_thresholds
 from thermicon.perception.observer.people import people_records
+from thermicon.perception.sensation.coverage import load_spans
 
 GROUPS = {
     "receptors": ("depth", "skin", "quality", "adaptation"),
@@ -41,6 +42,19 @@ def experiments_table() -> str:
         for key, count in counts.items()
     ]
     return markdown(("key", "experiment", "citation", "licence of code and data", "what was asked", "rows"), lines)
+
+
+def spans_table() -> str:
+    """What the experiments varied, with those at the ends."""
+    lines = [
+        (
+            each.respect,
+            f"{number(each.low)} {each.unit} ({each.low_of})",
+            f"{number(each.high)} {each.unit} ({each.high_of})",
+        )
+        for each in load_spans().values()
+    ]
+    return markdown(("condition", "from", "to"), lines)
 
 
 def constants_table(mechanisms: Sequence[str] = ()) -> str:
@@ -142,6 +156,7 @@ def _spread(record: Record) -> str:
 
 TABLES: Mapping[str, Callable[[], str]] = {
     "experiments": experiments_table,
+    "spans": spans_table,
     "constants": constants_table,
     "offsets": offsets_table,
     "unmoved": unmoved_sentence,

@@ -162,11 +162,21 @@ class RigOptions(Options):
         """Whether a rig or a change was asked for."""
         return self.rig is not None or bool(self.set)
 
-    def load(self, icons: IconSet | Icon | None = None, file: str = "") -> Rig:
-        """The rig with its changes, the usual one for icons of a file unless one is named; warnings go to stderr."""
+    def load(self, icons: IconSet | Icon | None = None, file: str = "", *, told: bool = False) -> Rig:
+        """The rig with its changes, the usual one for icons of a file unless one is named; warnings go to stderr.
+
+        ``told``: the command's own report says where rig and icons lie outside the data.
+        """
         rig = load_rig(self.rig, self.changes, site=None if icons is None else icons.context.site)
-        for warning in () if icons is None else site_warnings(file, icons, rig):
+        if icons is None:
+            return rig
+        for warning in site_warnings(file, icons, rig):
             note(f"warning: {warning}")
+        if not told:
+            from thermicon.perception.sensation.coverage import outside_setting
+
+            for sentence in outside_setting(icons.context.baseline_C, rig):
+                note(f"outside the data: {sentence}")
         return rig
 
 

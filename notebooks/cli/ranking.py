@@ -161,7 +161,7 @@ def rank_command(
         raise usage(f"{what}; narrow a family, or put its best members into a separate set", "FILE")
     from ..report.set_report import cures, report_of
 
-    where = rig.load(icons, files[0])
+    where = rig.load(icons, files[0], told=True)
     warnings = (*where.warnings, *site_warnings(files[0], icons, where))
     model = crowd.load(where)
     draws = crowd.draws(model)

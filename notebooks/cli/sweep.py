@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from thermicon.base.checks.arguments import checked
+from thermicon.base.checks.arguments import InputError, checked
 from thermicon.perception.ranking.swept import AGE, ALL, MEASURES, OF_95, SITE
 
 from ..files.outputs import TRACE_SUFFIXES, check_output, check_separate
@@ -232,7 +233,7 @@ def sweep_command(
         check_output(output, TRACE_SUFFIXES, "a sweep")
     check_separate([file], [output, figure.figure])
     icons = pick(whole := read_set([file]), icon)
-    where = rig.load(whole, file)
+    where = rig.load(whole, file, told=True)
     measured = Measured(whole, what, people, intervals or 0, seed) if what else None
     from ..figures.sweep_figure import sweep_figure
 
@@ -241,7 +242,7 @@ def sweep_command(
     if frame["duration_s"].isna().all():
         reason = frame["reason"].iloc[0]
         fail(f"--vary {key}: none of the {len(values)} values can be played; the first: {reason}")
-    for line in sweep_lines(frame, [each.name for each in icons], key):
+    for line in (*outside_lines(key, values, whole, where), *sweep_lines(frame, [each.name for each in icons], key)):
         note(line)
     figure.write(lambda: sweep_figure(frame, figure.look))
     if output is not None:
@@ -249,6 +250,23 @@ def sweep_command(
     elif what:
         following = after_sweep(frame, key, what[0], command_text([file], rig, paths=True))
         show([*sweep_report(frame, key, what), f"Next: {following}"])
+
+
+def outside_lines(key: str, values: Sequence[float | str], icons: IconSet, rig: Rig) -> list[str]:
+    """One line where values of a key are such as no experiment had, with the first of them."""
+    from thermicon.perception.ranking.swept import rig_under
+    from thermicon.perception.sensation.coverage import outside_age, outside_setting
+
+    beyond: list[str] = []
+    for value in values:
+        if key == AGE:
+            beyond += outside_age(float(value))
+            continue
+        with suppress(InputError):  # a rig that cannot be is a row with its reason
+            beyond += outside_setting(icons.context.baseline_C, rig_under(rig, {key: value}))
+    if not beyond:
+        return []
+    return [f"outside the data: {len(beyond)} of {len(values)} values of {key}; the first: {beyond[0]}"]
 
 
 def read_measures(text: str, intervals: int) -> tuple[str, ...]:

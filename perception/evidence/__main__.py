@@ -1,7 +1,8 @@
 """``python -m thermicon.perception.evidence``: make the shipped results of the inference again.
 
 ``fit`` infers the constants of every variant, and again without each experiment in turn to predict it (``--shipped``:
-predictions at the constants there are); ``sample`` writes draws of the posterior; ``observer`` the parameter file.
+predictions at the constants there are); ``sample`` writes draws of the posterior; ``observer`` the parameter file, and
+the spans of what the experiments varied.
 """
 
 import argparse
@@ -21,8 +22,9 @@ from ..observer.priors import WITHIN_95
 from .calibrate import COMMENT, calibrate
 from .chains import CHAINS, require_extra
 from .posterior import LeftOut, Maximum, Posterior, leave_each_out, maximise
-from .results import CONSTANTS, PREDICTIONS, Constant, PredictedRow, write_rows
+from .results import CONSTANTS, PREDICTIONS, SPANS, Constant, PredictedRow, write_rows
 from .sampling import LEAST_STEPS, approximate_draws, at_shipped, sample
+from .spans import spans_of
 
 REFUSED = 3
 LEAST_STEPS_ASKED, MOST_STEPS, USUAL_STEPS = 100, 100_000, 20_000
@@ -38,6 +40,7 @@ def main(words: Sequence[str] | None = None) -> int:
         return sample_posterior(asked)
     if asked.what == "observer":
         (DATA / "observer.toml").write_text(dump_records(calibrate(), comment=COMMENT), encoding="utf-8")
+        write_rows(spans_of(), SPANS)
     elif asked.shipped:
         found = [at_shipped(Posterior(variable)) for variable in VARIABLES]
         write_rows(predictions_of(found, leave_each_out(found[0], tell)), PREDICTIONS)

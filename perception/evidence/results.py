@@ -21,6 +21,7 @@ from .rows import Row, load_evidence, load_rows
 UNMOVED_SD = 0.9
 """A constant that keeps more of its prior's SD was hardly moved by the evidence."""
 CONSTANTS, PREDICTIONS, ABLATION = "constants.csv", "predictions.csv", "ablation.csv"
+SPANS = "spans.csv"
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +148,7 @@ def write_rows(rows: Sequence[Any], name: str, folder: Path = DATA) -> None:
     writer.writeheader()
     for row in rows:
         writer.writerow({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in asdict(row).items()})
-    head = f"# written by python -m thermicon.perception.evidence fit from inputs {inputs_digest()}\n"
+    head = f"# written by python -m thermicon.perception.evidence from inputs {inputs_digest()}\n"
     (folder / name).write_text(head + text.getvalue(), encoding="utf-8")
 
 

@@ -28,6 +28,8 @@ RAMPS: dict[Channel, tuple[float, float]] = {"cold": (5.0, 26.0), "warm": (4.81,
 """Rate in K/s as it really ran, and how far the reaction-time ramps went, K."""
 MEAN_AGE_YEARS = {"E1": 28.0, "E3": 24.5, "E4": 30.0, "E5": 27.0}
 """Mean age of the people whose rows are used; that of E1 and E5 is the middle of the range."""
+AGES_YEARS = {"E4": (21.0, 80.0)}
+"""Youngest and oldest of the people whose rows follow age."""
 ANTICIPATION_K = 0.2
 """Earlier presses of E3 were left out (evidence.toml)."""
 LIMIT_K = 12.0

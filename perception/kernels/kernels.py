@@ -28,11 +28,13 @@ def _adapted_drive(
     softness: float,
     low: float,
     high: float,
+    coldest_rest: float,
+    warmest_rest: float,
     integration_s: float,
     adaptation_s: float,
     drive: Any,
 ) -> None:
-    """Receptor drive (rows, n_time) in K; the receptor is adapted at the first sample, as far as the neutral zone."""
+    """Receptor drive (rows, n_time) in K, 0 at rest, the first sample; rest beyond its ends counts as at the nearer."""
     # Weights of the old state, the old and the new input over one step.
     decay_i, decay_a = math.exp(-dt / integration_s), math.exp(-dt / adaptation_s)
     mean_i, mean_a = (
@@ -42,11 +44,14 @@ def _adapted_drive(
     samples = temperature.shape[1]
     quality = np.empty(samples)
     for row in range(temperature.shape[0]):
+        rest = temperature[row, 0]
+        shift = min(max(rest, coldest_rest), warmest_rest) - rest
         for t in range(samples):
-            x = sign * (temperature[row, t] - limit) / softness
-            nearest = temperature[row, t] if x > 0.0 else limit
+            felt = temperature[row, t] + shift
+            x = sign * (felt - limit) / softness
+            nearest = felt if x > 0.0 else limit
             quality[t] = nearest + sign * softness * log1p(exp(-abs(x)))  # ln(1 + e^x) = max(x, 0) + ln(1 + e^−|x|)
-        # States are counted from the first sample, where what does not change leaves them at 0 without rounding.
+        # States are counted from the first sample, to which the receptor is adapted: rest leaves them at 0, unrounded.
         first = quality[0]
         first_clipped = min(max(first, low), high)
         q, clipped, integrated, level = 0.0, 0.0, 0.0, 0.0
@@ -57,7 +62,7 @@ def _adapted_drive(
                 clipped = min(max(quality[t], low), high) - first_clipped
                 integrated = decay_i * integrated + ((mean_i - decay_i) * last_q + (1.0 - mean_i) * q)
                 level = decay_a * level + ((mean_a - decay_a) * last_clipped + (1.0 - mean_a) * clipped)
-            y = sign * ((integrated - level) + (first - first_clipped))
+            y = sign * (integrated - level)
             drive[row, t] = y if y > 0.0 else 0.0
 
 

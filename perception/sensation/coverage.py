@@ -1,7 +1,14 @@
-"""Warnings for icons outside the published data (`data/coverage.toml`)."""
+"""Where the data end, with a warning for an icon that lies outside.
+
+What the evidence varied stands in `data/spans.csv`, which ``python -m thermicon.perception.evidence observer`` writes;
+limits that it does not say are records of `data/coverage.toml`.
+"""
 
 from __future__ import annotations
 
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -11,12 +18,17 @@ from thermicon.base.files.records import Record, RecordTable, load_records
 from thermicon.base.numbers.arrays import Array
 from thermicon.base.words.number_text import significant
 
+from ..observer.mechanisms.summation import CM2
 from ..observer.observer import DATA
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Trace
+    from thermicon.circuit import Rig, Trace
 
 CALIBRATED = "thenar"
+REST_SLACK_K = 0.25
+"""A thermode at the end of the span leaves the skin under it a little warmer or colder."""
+DURATION_SLACK_S = 0.05
+"""Shorter differences are those of a ramp's length."""
 MIRRORS = ("left", "right")
 NEAREST = {
     "thenar": (("fingertip", "finger", "fingers", "palm", "hypothenar", "thumb"), "hairless skin of the same hand"),
@@ -27,6 +39,47 @@ NEAREST = {
     "face": (("face", "cheek", "forehead", "lip", "chin", "neck", "temple"), "the same part of the body"),
 }
 """For each recorded site, words of sites that it is the nearest to, and why."""
+
+RESPECTS: Mapping[str, str] = {
+    "rest": "°C", "area": "cm²", "size": "K", "rate": "K/s", "duration": "s", "age": "years",
+}  # fmt: skip
+"""What is varied, with its unit: the resting temperature, the contact, the change and its rate, a trial, the people."""
+
+
+@dataclass(frozen=True, slots=True)
+class EvidenceSpan:
+    """What the experiments varied in one respect; `low_of` and `high_of` name those at its ends."""
+
+    respect: str
+    unit: str
+    low: float
+    low_of: str
+    high: float
+    high_of: str
+
+    def outside(self, value: float, subject: str, slack: float = 0.0) -> str:
+        """Where a value lies more than `slack` outside, `subject` with the value and the span; empty inside."""
+        if self.low - slack <= value <= self.high + slack:
+            return ""
+        bound = self.low if value < self.low else self.high
+        shown, _ = significant(value, bound)
+        return f"{subject} {shown} {self.unit} (the evidence: {self.low:.3g} to {self.high:.3g} {self.unit})"
+
+
+def load_spans() -> Mapping[str, EvidenceSpan]:
+    """The shipped spans by respect.
+
+    >>> load_spans()["rest"].low
+    30.0
+    """
+    with (DATA / "spans.csv").open(encoding="utf-8", newline="") as file:
+        rows = csv.DictReader(line for line in file if not line.startswith("#"))
+        return {
+            row["respect"]: EvidenceSpan(
+                row["respect"], row["unit"], float(row["low"]), row["low_of"], float(row["high"]), row["high_of"]
+            )
+            for row in rows
+        }
 
 
 @lru_cache(maxsize=1)
@@ -44,7 +97,44 @@ def outside_data(trace: Trace) -> tuple[str, ...]:
         ("the warm receptor", trace.warm_receptor_C),
     )
     found = [*_temperatures(table.one("temperature"), places, trace.time_s), *_rates(table.one("rate"), places, trace)]
-    return (*found, *outside_site(trace.site))
+    return (*_setting(float(trace.skin_C[0]), trace.area_m2, trace.site), *_course(trace), *found)
+
+
+def outside_setting(baseline_C: float | None, rig: Rig) -> tuple[str, ...]:
+    """A sentence on rest, contact and site, where no experiment had them; None: skin rests as the rig has it."""
+    return _setting(rig.skin.rest_C if baseline_C is None else baseline_C, rig.contact.area_m2, rig.site)
+
+
+def outside_age(age_years: float) -> tuple[str, ...]:
+    """A sentence where people are younger or older than those of every experiment."""
+    return _joined(load_spans()["age"].outside(age_years, "people are aged"))
+
+
+def _setting(rest_C: float, area_m2: float, site: str) -> tuple[str, ...]:
+    spans = load_spans()
+    rest = spans["rest"].outside(rest_C, "the skin rests at", REST_SLACK_K)
+    return _joined(rest, spans["area"].outside(area_m2 / CM2, "the contact is"), *outside_site(site))
+
+
+def _course(trace: Trace) -> tuple[str, ...]:
+    """A sentence on the duration, the size and the rate of what is played, where no experiment had them."""
+    spans, course = load_spans(), trace.current_A if trace.control == "current" else trace.target_C
+    changes = np.flatnonzero(np.diff(course))
+    if not changes.size:
+        return ()
+    lasting_s = float(trace.time_s[changes[-1] + 1] - trace.time_s[changes[0]])
+    size_K = float(np.abs(trace.skin_C - trace.skin_C[0]).max())
+    fastest_K_per_s = float(np.abs(np.diff(trace.skin_C) / np.diff(trace.time_s)).max())
+    return _joined(
+        spans["duration"].outside(lasting_s, "it changes for", DURATION_SLACK_S),
+        spans["size"].outside(size_K, "the skin changes by"),
+        spans["rate"].outside(fastest_K_per_s, "the skin changes at"),
+    )
+
+
+def _joined(*told: str) -> tuple[str, ...]:
+    sentence = ", ".join(filter(None, told))
+    return (sentence,) if sentence else ()
 
 
 def outside_site(site: str) -> tuple[str, ...]:

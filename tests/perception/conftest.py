@@ -25,6 +25,12 @@ class FakeTrace:
     site: str = "thenar"
     area_m2: float = 9e-4
     rig: None = None
+    control: str = "skin"
+
+    @property
+    def target_C(self) -> Array:
+        """It is reached at once."""
+        return self.skin_C
 
     def but(self, **changes: object) -> "FakeTrace":
         """As `dataclasses.replace`."""

@@ -15,6 +15,10 @@ from ..channels import SIGN, Channel
 from ..constants import Both, constant
 from .bounds import Bounds
 
+RESTS_C = (30.0, 34.25)
+"""Where receptors rest in the experiments, under skin of 30 to 34 °C. How it is elsewhere none says: as at the nearer
+end, which is assumed."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Adaptation(Bounds):
@@ -39,17 +43,18 @@ class Adaptation(Bounds):
         """Drive (never negative, in `drive_unit`) of one channel for what reaches its receptors, of the same shape.
 
         `received` (..., n_time) is °C at the depth of the channel or, as `variable` says, W/m² into the skin there. At
-        the first sample the receptor is adapted as far as the neutral zone allows.
+        the first sample, at rest, nothing is felt: what is felt in every task is a change from there.
         """
         from ...kernels.kernels import adapted_drive
 
         rows, shape = as_rows(received)
         drive = np.empty_like(rows)
         sign, limit, (low, high) = SIGN[channel], self.limit_C.of(channel), self.neutral(channel)
+        rests = RESTS_C if self.variable == "temperature" else (low, high)
         times = self.integration_s, self.adaptation_s
 
         def work(part: slice) -> None:
-            adapted_drive(rows[part], dt_s, sign, limit, self.softness_K, low, high, *times, drive[part])
+            adapted_drive(rows[part], dt_s, sign, limit, self.softness_K, low, high, *rests, *times, drive[part])
 
         over_rows(work, rows.shape[0], rows.size)
         return drive.reshape(shape)

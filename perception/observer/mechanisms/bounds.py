@@ -11,7 +11,7 @@ NO_LIMIT_C = Both(1e6, -1e6)
 
 @dataclass(frozen=True, kw_only=True)
 class Bounds(Mechanism):
-    """Hardly any cold above its limit, no warmth below its own: a fall from 36 to 34 °C is less warm, not cold."""
+    """Hardly any cold above its limit, no warmth below its own: from 36 back to 34 °C is less warm, not cold."""
 
     equation = "q = L + s·δ·ln(1 + e^(s·(T − L)/δ))"
     source = "Campero et al. 2001 for cold; Konietzny & Hensel 1977 for warmth"

@@ -27,7 +27,7 @@ def swept(two: Path, key: str, values: list[Any], rig: str = "thenar", **more: A
 
 def test_a_row_for_every_icon_and_value(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "sweep.csv"
-    said = cli("sweep", two, "--vary", f"{AREA}=4:16:4", "-o", out)
+    said = cli("sweep", two, "--vary", f"{AREA}=3:9:4", "-o", out)
     assert (said.exit_code, said.stdout) == (0, "")
     assert said.stderr.splitlines() == [
         "cool-step: reached at 4 of 4 values, everywhere within 1 mK",
@@ -37,7 +37,7 @@ def test_a_row_for_every_icon_and_value(cli: Cli, two: Path, tmp_path: Path) -> 
     frame = pd.read_csv(out)
     assert list(frame.columns[:4]) == ["icon", AREA, "duration_s", "reached"]
     assert list(frame["icon"]) == ["cool-step"] * 4 + ["warm-step"] * 4
-    assert list(frame[AREA]) == [4, 8, 12, 16] * 2
+    assert list(frame[AREA]) == [3, 5, 7, 9] * 2
     assert frame["reached"].all()
     assert frame["reason"].isna().all()
 

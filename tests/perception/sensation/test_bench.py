@@ -10,7 +10,7 @@ from thermicon.icons import parse
 from thermicon.perception import Observer, perceive, rank
 from thermicon.perception.observer.observer import load_thresholds
 from thermicon.perception.sensation.bench import Bench, raised_cosine, ramp
-from thermicon.perception.sensation.coverage import load_coverage, outside_data, outside_site
+from thermicon.perception.sensation.coverage import load_coverage, outside_age, outside_data, outside_site
 
 
 @pytest.fixture(scope="module")
@@ -61,6 +61,45 @@ def test_cold_and_hot_and_fast(cue: Any, change: float, rate: float, said: str) 
     assert outside_data(deeper)[0] == "the cold receptor falls to 12 °C (0.0 s); data begin at 15 °C", "the furthest"
 
 
+@pytest.mark.parametrize(
+    ("inside", "outside", "said"),
+    [
+        ({"rest_C": 29.8}, {"rest_C": 29.7}, "the skin rests at 29.7 °C (the evidence: 30 to 34 °C)"),
+        ({"rest_C": 34.2}, {"rest_C": 34.3}, "the skin rests at 34.3 °C (the evidence: 30 to 34 °C)"),
+        ({"area_m2": 1.97e-4}, {"area_m2": 1.95e-4}, "the contact is 1.95 cm² (the evidence: 1.96 to 9.8 cm²)"),
+        ({"area_m2": 9.7e-4}, {"area_m2": 9.9e-4}, "the contact is 9.9 cm² (the evidence: 1.96 to 9.8 cm²)"),
+        ({"hold": 1.1}, {"hold": 0.9}, "it changes for 1.4 s (the evidence: 1.52 to 27.1 s)"),
+        ({"hold": 26.6}, {"hold": 26.8}, "it changes for 27.3 s (the evidence: 1.52 to 27.1 s)"),
+        ({"rate": 0.6}, {"rate": 0.4}, "the skin changes at 0.4 K/s (the evidence: 0.5 to 40 K/s)"),
+    ],
+)
+def test_from_either_side_of_what_the_evidence_varied(
+    cue: Any, inside: dict[str, float], outside: dict[str, float], said: str
+) -> None:
+    def told(rest_C: float = 32.0, area_m2: float = 9e-4, hold: float = 4.0, rate: float = 4.0) -> tuple[str, ...]:
+        trace = cue(change=-1.0, rate=rate, hold=hold, end_s=40.0)
+        return outside_data(trace.but(skin_C=trace.skin_C + rest_C - 32.0, area_m2=area_m2))
+
+    assert told(**inside) == ()
+    assert told(**outside) == (said,)
+
+
+def test_respects_that_all_icons_share_are_one_sentence(cue: Any) -> None:
+    trace = cue(change=-1.0, hold=0.5)
+    both, course = outside_data(trace.but(skin_C=trace.skin_C - 6.0, area_m2=1e-4))
+    assert (
+        both
+        == "the skin rests at 26 °C (the evidence: 30 to 34 °C), the contact is 1 cm² (the evidence: 1.96 to 9.8 cm²)"
+    )
+    assert course.startswith("it changes for 1.17 s")
+
+
+def test_ages_beyond_those_of_every_experiment() -> None:
+    assert outside_age(21.0) == outside_age(80.0) == ()
+    assert outside_age(20.0) == ("people are aged 20 years (the evidence: 21 to 80 years)",)
+    assert outside_age(81.0) == ("people are aged 81 years (the evidence: 21 to 80 years)",)
+
+
 def test_counts_of_records_are_those_of_the_table() -> None:
     table = [r for r in load_thresholds() if r.quantity in ("detection threshold", "limits threshold")]
     sites = load_coverage().select("site")
@@ -75,6 +114,9 @@ def test_counts_of_records_are_those_of_the_table() -> None:
 def test_a_ranking_carries_it() -> None:
     text = "cue 1\nset s { control skin }\nicon a { cool by 2 °C at 1 °C/s; hold for 1 s }"
     ranking = rank(parse(text), Rig.load("fingertip"), people=1, parameters=0)
-    said = ["no detection threshold is on record for the fingertip: those of the thenar are used"]
+    said = [
+        "the contact is 1.5 cm² (the evidence: 1.96 to 9.8 cm²), "
+        "no detection threshold is on record for the fingertip: those of the thenar are used"
+    ]
     assert list(ranking.icons[0].outside_data) == said
     assert ranking.to_dict()["icons"][0]["outside_data"] == said

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception import Observer
-from thermicon.perception.observer.channels import Channel, Variable
+from thermicon.perception.observer.channels import CHANNELS, Channel, Variable
 from thermicon.perception.observer.constants import Both
 
 
@@ -52,9 +52,18 @@ def test_adaptation_is_complete_inside_the_neutral_zone_only(
     assert far[-1] == pytest.approx(left, abs=4e-5 * left)
 
 
-def test_a_baseline_outside_the_zone_starts_with_its_residue(observer: Observer) -> None:
-    assert observer.drive(np.full(50, 38.0), 0.01, "warm") == pytest.approx(2.0, abs=1e-12)
-    assert observer.drive(np.full(50, 38.0), 0.01, "cold").max() == 0.0
+@pytest.mark.parametrize(("rest", "end"), [(22.0, 30.0), (29.9, 30.0), (34.35, 34.25), (41.0, 34.25)])
+def test_who_rests_as_nobody_in_an_experiment_feels_what_is_felt_at_the_nearer_end(
+    observer: Observer, rest: float, end: float
+) -> None:
+    """Nothing at rest, and a change from there as the same change from the end."""
+    change, person = np.interp(np.arange(0.0, 8.0, 0.01), [1.0, 2.0, 5.0, 6.0], [0.0, 3.0, 3.0, 0.0]), limited(observer)
+    for channel, sign in zip(CHANNELS, (-1.0, 1.0), strict=True):
+        assert person.drive(np.full(50, rest), 0.01, channel).max() == 0.0
+        from_rest, from_end = (person.drive(level + sign * change, 0.01, channel) for level in (rest, end))
+        assert from_rest == pytest.approx(from_end, abs=1e-9)
+    assert person.drive(rest + change, 0.01, "cold")[:500].max() == 0.0, "warming is not felt by cold"
+    assert person.drive(rest - change, 0.01, "warm")[:500].max() == 0.0, "cooling is not felt by warmth"
 
 
 def limited(observer: Observer, softness_K: float = 0.1) -> Observer:
@@ -63,12 +72,12 @@ def limited(observer: Observer, softness_K: float = 0.1) -> Observer:
 
 def test_there_is_no_cold_above_its_limit_and_no_warmth_below(observer: Observer) -> None:
     t = np.arange(0.0, 6.0, 0.01)
-    fall = np.interp(t, [0.0, 2.0], [35.9, 33.5])
-    assert observer.drive(fall, 0.01, "cold").max() > 2.0
+    fall = np.interp(t, [0.0, 2.0], [34.2, 33.5])
+    assert observer.drive(fall, 0.01, "cold").max() > 0.6
     assert limited(observer).drive(fall, 0.01, "cold").max() < 0.01
-    rise = np.interp(t, [0.0, 2.0], [28.0, 30.5])
+    rise = np.interp(t, [0.0, 2.0], [30.0, 30.5])
     assert limited(observer).drive(rise, 0.01, "warm").max() < 0.01
-    assert limited(observer).drive(rise + 4.0, 0.01, "warm").max() > 2.0
+    assert limited(observer).drive(rise + 4.0, 0.01, "warm").max() > 0.4
     far = np.interp(t, [0.0, 2.0], [30.0, 27.0])  # far beyond its limit a channel is as without
     near = np.interp(t, [0.0, 0.5], [33.4, 33.0])
     hard, soft = (limited(observer, s).drive(near, 0.01, "cold").max() for s in (0.01, 1.0))
