@@ -174,14 +174,12 @@ class Search:
     def cut_off_around(self, pause_s: float) -> Stages:
         """The cut-offs around what the display reaches: one where the longest pause makes that suffice, else two."""
         reach = self.reach(pause_s)
-        single = self._single(reach)
-        if not single.failed or not self._single(self.reach(self.longest_s)).failed:
+        single = one_stage(self.limits, reach.reach_C, self.lasting, self.beyond_K)
+        if not single.failed:
+            return single
+        if not one_stage(self.limits, self.reach(self.longest_s).reach_C, self.lasting, self.beyond_K).failed:
             return single
         return two_stages(self.limits, self.skin, reach.reach_C, self.lasting, reach.beyond_s, self.beyond_K)
-
-    def _single(self, reach: Shown) -> Stages:
-        """A single cut-off, which fails where the display goes farther than it may stay."""
-        return one_stage(self.limits, reach.reach_C, self.lasting, self.beyond_K)
 
     def suffices(self, number: int, pause_s: float, within_s: Span) -> bool:
         """Whether a watchdog and a cut-off that act in time keep a drive safe after a pause, in the hardest corners.
