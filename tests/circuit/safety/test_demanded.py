@@ -31,8 +31,10 @@ PRACTICAL_S, LATER = 0.1, 1.25
 """A watchdog or a cut-off this quick is asked for rather than a longer pause; so many times as late may it act."""
 SURE = sure_rig("thenar").with_(**SLOW, **{"skin.elements": [1] * 5})
 UNSURE = sure_rig("thenar", "contact_resistance_relative").with_(**SLOW, **{"skin.elements": [1] * 5})
+LIVELY = sure_rig("thenar", "plates_relative").with_(**SLOW, **{"skin.elements": [1] * 5})
 NARROW = SURE.with_(**{"safety.display_highest_C": 41.4})
-"""One corner; three, in which cut-offs are farther out; and one in which no pause makes a tenth of a second suffice."""
+"""One corner; three, in which cut-offs are farther out; three of which the first is mild; and one corner in which no
+pause makes a tenth of a second suffice."""
 RIGS = pytest.mark.parametrize("rig", [SURE, UNSURE], ids=["sure", "unsure"])
 DOSE_MIN, LIMITS_C = 0.5, np.array([[14.0, 40.5], [14.0, 40.5], [5.0, 42.0], [-NEVER, 60.0]])
 """What a fault may add on these rigs, and lead skin, receptors, display and hot plate to."""
@@ -162,17 +164,20 @@ def test_what_suffices_keeps_every_limit_and_a_little_later_passes_one(rig: Rig)
     assert one.hung_K(20.0, LATER * hangs_s) <= 0.0 < one.hung_K(20.0, 1.25 * LATER * hangs_s)
 
 
-@RIGS
+@pytest.mark.parametrize("rig", [SURE, LIVELY], ids=["sure", "lively"])
 def test_demands_in_plays_keep_every_limit_in_all_corners_and_the_next_slower_ones_do_not(rig: Rig) -> None:
     """Also where the corner in which they are sought is not the worst."""
     one = searched(rig)
     watchdog_s, react_s = one.search.demands_of(0, 60.0).within_s
     assert replace(one.search, hardest=[[0]]).demands_of(0, 60.0).within_s == (watchdog_s, react_s)
-    slower_s, later_s = (
-        tried[tried.index(time_s) + 1] for tried, time_s in ((HANGS_S, watchdog_s), (REACTIONS_S, react_s))
-    )
+    slower_s, later_s = HANGS_S[HANGS_S.index(watchdog_s) + 1], REACTIONS_S[REACTIONS_S.index(react_s) + 1]
     assert one.hung_K(60.0, LATER * watchdog_s) <= 0.0 < one.hung_K(60.0, LATER * slower_s)
     assert one.stuck_in_plays_K(60.0, LATER * react_s) <= 0.0 < one.stuck_in_plays_K(60.0, LATER * later_s)
+    within = [
+        one.search.demands_within(60.0, [needed_s])
+        for needed_s in ((watchdog_s, react_s), (slower_s, 0.0), (0.0, later_s))
+    ]
+    assert [demands is None for demands in within] == [False, True, True]
 
 
 def test_cut_offs_are_as_far_out_as_a_driver_stuck_before_a_play_allows() -> None:
@@ -193,7 +198,7 @@ def test_cut_offs_are_as_far_out_as_a_driver_stuck_before_a_play_allows() -> Non
 
 
 def test_the_shortest_pause_is_the_first_with_a_practical_cut_off() -> None:
-    """By how quickly it must act on one rig, by what it lets pass on the other."""
+    """By how quickly it must act on one rig, by what it lets pass on another, and by the rest before a first play."""
     sure, unsure = searched(SURE), searched(UNSURE)
     pause_s, (in_plays,) = sure.search.shortest(sure.begin_s)
     assert in_plays.within_s[1] == PRACTICAL_S < sure.begin_s < 0.5 * pause_s
@@ -202,6 +207,8 @@ def test_the_shortest_pause_is_the_first_with_a_practical_cut_off() -> None:
     pause_s, _ = unsure.search.shortest(unsure.begin_s)
     most_C = unsure.search.lasting[1] - LEAST_BEYOND_K
     assert unsure.shown(pause_s)[1] < most_C < unsure.shown(0.8 * pause_s)[1]
+    without_rest = replace(unsure.search, _rests={pause_s: None})
+    assert without_rest.shortest(unsure.begin_s)[0] > pause_s, "after it no rest would keep a first play safe"
 
 
 def test_where_no_pause_makes_a_tenth_of_a_second_suffice_what_the_longest_needs_is_asked_for() -> None:
