@@ -27,6 +27,11 @@ QUICK = {
     "module.cold_plate_J_per_K": 1.5,
 }  # fmt: skip
 UNSURE, SURE, CUT = Rig.load("thenar").with_(**QUICK), sure_rig().with_(**QUICK), CutOff(28.0, 38.0, 0.0)
+LAGGING = SURE.with_(**{
+    "driver.current_limit_A": 1.668, "heat_sink.temperature_C": 33.94, "module.cold_plate_J_per_K": 2.054,
+    "module.seebeck_V_per_K": 0.05852, "contact.area_cm2": 4.662, "contact.resistance_m2K_per_W": 0.001064,
+})  # fmt: skip
+"""Where the skin is fastest when a loop goes to a limit and stays there, not when it swings."""
 WRONG_K, LOSS_K = 0.3, 0.05
 """Offset of a sensor, and what a display may miss more than with the driver's own limits, rms."""
 
@@ -72,6 +77,13 @@ def test_within_slowed_limits_no_loop_is_too_fast_and_a_tenth_wider_on_either_si
     assert fastest(UNSURE, (1.1 * low_A, high_A)) > RATE_K_PER_S
     assert fastest(UNSURE, (low_A, 1.1 * high_A)) > RATE_K_PER_S
     assert slowed(SURE)[1] == 2.0, "nor do they come down where they need not"
+    low_A, high_A = slowed(LAGGING)
+    assert (
+        fastest(LAGGING, (low_A, high_A))
+        <= 0.975 * RATE_K_PER_S
+        < RATE_K_PER_S
+        < fastest(LAGGING, (1.1 * low_A, high_A))
+    )
 
 
 def test_swapped_wires_are_told_where_turned_limits_are_too_fast_and_only_there() -> None:
