@@ -26,6 +26,7 @@ from ..safety.ensemble import LaneDrives
 from ..safety.fault_limits import FaultLimits
 from ..safety.held import BEYOND_K, SENSOR_K, Span, Stages
 from ..safety.single_faults import AFTER_ROWS_S, HANG_ROWS_S
+from ..safety.stuck_rate import RATE
 from ..safety.tally import HOTTEST_C, WATCHED, Tally
 from ..solver.batch_inputs import Bank, State, run_follow
 from ..solver.inverse import regulated
@@ -44,6 +45,8 @@ ROOM = 0.97
 """Share of a limit that the worst of these swings may reach."""
 STEP_A, TRIES = 0.01, 12
 """Current limits are sought in such steps, and so often."""
+HEATS = 1.1
+"""Factor by which an upper current limit comes down that heats too much."""
 ANY_V = 1e4
 """A supply that holds no current back."""
 BEYONDS_K = (1.0, 0.5)
@@ -74,104 +77,119 @@ class AnyLoop:
         They are alike for both signs where the set-points need no more, so that swapped poles are no faster.
         """
         driver = self.module.ensemble.rig.driver
-        given = limits = driver.current_min_A, driver.current_max_A
-        ends = self.ends(cut)
-        warm = replace(ends[1], nodes_C=np.maximum(ends[0].nodes_C, ends[1].nodes_C))
-        checks = wide = (*self._rates(cut, ends, given), *self._at_limit(cut, warm, given[1]))
-        for _ in range(TRIES):
-            share = {(check.quantity, check.upper): check.value / check.limit / ROOM for check in checks}
-            warming, cooling = share["rate of skin temperature", True], share["rate of skin temperature", False]
-            hot = 1.1 if any(check.unit == "°C" and not check.passed for check in checks) else 0.0
-            if max(warming, cooling, hot) <= 1.0:
-                break
-            limits = -_whole_A(-limits[0] / max(1.0, warming)), _whole_A(limits[1] / max(1.0, cooling, hot))
-            checks = (*self._rates(cut, ends, limits), *self._at_limit(cut, warm, limits[1]))
-        alike_A = min(-limits[0], limits[1])
-        shown = [self._shown(play, given) for play in plays]
-        if alike_A < max(-limits[0], limits[1]) and self._suffices((-alike_A, alike_A), plays, shown):
-            return (-alike_A, alike_A), checks
-        if self._suffices(limits, plays, shown):
-            return limits, checks
-        cure = f", as its set-points need; a driver.current_limit_A of {min(-limits[0], limits[1]):g} A slows them"
-        return given, tuple(replace(check, run=replace(check.run, way=f"{check.run.way}{cure}")) for check in wide)
+        given = driver.current_min_A, driver.current_max_A
+        slow, checks = self.slowed(cut, given)
+        alike_A = min(-slow[0], slow[1])
+        shown_C = [self._shown_C(play, given) for play in plays]
+        for limits_A in dict.fromkeys([(-alike_A, alike_A), slow]):
+            if self.suffices(limits_A, plays, shown_C):
+                return limits_A, checks
+        cure = f", as its set-points need; a driver.current_limit_A of {alike_A:g} A slows them"
+        return given, tuple(
+            replace(check, run=replace(check.run, way=f"{check.run.way}{cure}")) for check in self.checks(cut, given)
+        )
 
-    def _suffices(self, limits_A: Limits_A, plays: Sequence[Samples], shown: Sequence[Array]) -> bool:
-        """Whether set-points are followed as well within limits as they are `shown` within the driver's own."""
+    def slowed(self, cut: CutOff, given: Limits_A) -> tuple[Limits_A, tuple[Check, ...]]:
+        """Current limits that come down from others until no loop passes a limit, as far as tried, and the checks."""
+        limits_A, checks = given, self.checks(cut, given)
+        for _ in range(TRIES):
+            below, above = too_wide(checks)
+            if max(below, above) <= 1.0:
+                break
+            limits_A = -_whole_A(-limits_A[0] / max(1.0, below)), _whole_A(limits_A[1] / max(1.0, above))
+            checks = self.checks(cut, limits_A)
+        return limits_A, checks
+
+    def suffices(self, limits_A: Limits_A, plays: Sequence[Samples], shown_C: Sequence[Array]) -> bool:
+        """Whether set-points are followed as well within limits as they are `shown_C` within the driver's own."""
         loss_K = loss_limit("receptor difference")
-        for play, as_given in zip(plays, shown, strict=True):
-            slower_K = self._shown(play, limits_A) - as_given
+        for play, as_given_C in zip(plays, shown_C, strict=True):
+            slower_K = self._shown_C(play, limits_A) - as_given_C
             if float(np.sqrt(np.mean(slower_K**2))) > loss_K:
                 return False
         return True
 
-    def _shown(self, play: Samples, limits_A: Limits_A) -> Array:
+    def _shown_C(self, play: Samples, limits_A: Limits_A) -> Array:
         """The display of the rig as given that its loop takes along set-points within current limits."""
         rig = self.module.rigs[0]
         rest, goals = rest_of_a_loop(rig, float(play.command[0])), updates_of(play, 1.0 / rig.driver.update_Hz)
         return regulated(rig, self.within(limits_A), goals, rest)[1]
 
-    def _rates(self, cut: CutOff, ends: Sequence[State], limits_A: Limits_A) -> tuple[Check, ...]:
-        """Rates where a loop swings between the cut-offs, from a display without power on; and where it goes to a limit
-        at once and stays there, from the cut-off of the other side.
-        """
+    def checks(self, cut: CutOff, limits_A: Limits_A) -> tuple[Check, ...]:
+        """What any loop within current limits leads to: rates of skin, the hot plate, and where a display stays."""
+        rates, hot_plate = self.rates(cut, limits_A), self._hot_plate(cut, limits_A[1])
+        return (*rates, *hot_plate, self._for_good(cut, limits_A[1]))
+
+    def rates(self, cut: CutOff, limits_A: Limits_A) -> tuple[Check, ...]:
+        """Rates of skin under a loop that swings between the cut-offs, or goes from one to a limit and stays there."""
         ensemble = self.module.ensemble
-        period = 1.0 / ensemble.rig.driver.update_Hz
-        counts = [max(1, round(swing / period)) for swing in SWINGS_S]
-        levels = [level for level, _ in zip(itertools.cycle((cut.low, cut.high)), counts, strict=False)]
-        goals, start = np.repeat(levels, counts)[np.newaxis], ensemble.at_rest(0.0)
-        lanes = ensemble.lanes
-        flows, _, _ = run_follow(
-            self.within(limits_A), lanes, np.zeros_like(lanes), period, goals, False, start.nodes_C
-        )
-        currents: Array = np.append(flows, flows[:, -1:], axis=1)
-        times: Array = np.arange(currents.shape[1], dtype=np.float64) * period
-        runs = [(LaneDrives(times, currents / ensemble.gain[:, np.newaxis]), start)]
-        stuck: Array = np.linspace(0.0, STUCK_S, 2)
-        for end, limit_A in zip(ends, limits_A, strict=True):
-            runs.append((LaneDrives(stuck, np.full((len(lanes), 2), limit_A)), end))
-        what = Scenario(way=f"under any loop of {limits_A[0]:g} … {limits_A[1]:g} A".replace("-", "−"))
+        way = f"under any loop of {limits_A[0]:g} … {limits_A[1]:g} A".replace("-", "−")
+        runs = [(self._swinging(cut, limits_A), ensemble.at_rest(0.0))]
+        for end, limit_A in zip(self.ends(cut), limits_A, strict=True):
+            stuck: Array = np.linspace(0.0, STUCK_S, 2)
+            runs.append((LaneDrives(stuck, np.full((len(ensemble.lanes), 2), limit_A)), end))
         judged = []
         for drives, begun in runs:
-            tally = Tally(ensemble.rig.limits, ensemble.corners, what)
+            tally = Tally(ensemble.rig.limits, ensemble.corners, Scenario(way=way))
             for (rows, values), _ in ensemble.play(drives, begun):
                 tally.add(rows, values, sums=False)
             judged.append(tally.checks())
-        return tuple(check for check in worst_of(judged) if check.quantity == "rate of skin temperature")
+        return tuple(check for check in worst_of(judged) if check.quantity == RATE)
+
+    def _swinging(self, cut: CutOff, limits_A: Limits_A) -> LaneDrives:
+        """The fastest currents from no power to the lower cut-off, then to the upper, and so on."""
+        ensemble = self.module.ensemble
+        lanes, period_s = ensemble.lanes, 1.0 / ensemble.rig.driver.update_Hz
+        counts = [max(1, round(swing_s / period_s)) for swing_s in SWINGS_S]
+        levels = [level for level, _ in zip(itertools.cycle((cut.low, cut.high)), counts, strict=False)]
+        goals = np.repeat(levels, counts)[np.newaxis]
+        flows_A, _, _ = run_follow(
+            self.within(limits_A), lanes, np.zeros_like(lanes), period_s, goals, False, ensemble.at_rest(0.0).nodes_C
+        )
+        currents_A: Array = np.append(flows_A, flows_A[:, -1:], axis=1)
+        times_s: Array = np.arange(currents_A.shape[1], dtype=np.float64) * period_s
+        return LaneDrives(times_s, currents_A / ensemble.gain[:, np.newaxis])
 
     def swapped(self, cut: CutOff, limits_A: Limits_A) -> tuple[SingleFault, ...]:
         """The fault of wires that are swapped in mid-play, where limits are not alike and the skin is then too fast."""
         turned_A = -limits_A[1], -limits_A[0]
         if turned_A == limits_A:
             return ()
-        rates = self._rates(cut, self.ends(cut), turned_A)
+        rates = self.rates(cut, turned_A)
         told = {"rate": max(abs(check.value) for check in rates), "kept": False, "limit_A": limits_A}
         return () if all(check.passed for check in rates) else (SingleFault("swapped fast", "red", told),)
 
-    def _at_limit(self, cut: CutOff, warm: State, limit_A: float) -> tuple[Check, ...]:
-        """The hot plate of a driver stuck at its limit, from nodes as `warm` as in any display inside the cut-offs;
-        and where a loop that stays there for good takes the display.
+    def _hot_plate(self, cut: CutOff, limit_A: float) -> tuple[Check, ...]:
+        """The hot plate of a driver stuck at its limit until the lower cut-off has acted.
+
+        It begins with every node as warm as in any display inside the cut-offs.
         """
-        ensemble, amperes = self.module.ensemble, signed(limit_A, "g")
-        values, _ = ensemble.hold(limit_A, warm, HANG_ROWS_S)
+        ensemble, (cold, warm) = self.module.ensemble, self.ends(cut)
+        warmest = replace(warm, nodes_C=np.maximum(cold.nodes_C, warm.nodes_C))
+        values, _ = ensemble.hold(limit_A, warmest, HANG_ROWS_S)
         out = values[WATCHED.index("display_C")] < cut.low - SENSOR_K
         acted_s = np.where(out.any(axis=1), HANG_ROWS_S[out.argmax(axis=1)] + REACTIONS_S[0], np.inf)
-        what = f"display at the upper cut-off, then {amperes} A until the lower has acted"
-        tally = Tally(ensemble.rig.limits, ensemble.corners, Scenario(way=what, before=Before("any")))
+        way = f"display at the upper cut-off, then {signed(limit_A, 'g')} A until the lower has acted"
+        tally = Tally(ensemble.rig.limits, ensemble.corners, Scenario(way=way, before=Before("any")))
         until = np.where(acted_s[:, np.newaxis] >= HANG_ROWS_S, values, values[:, :, :1])
         tally.add(HANG_ROWS_S, until, rates=False, sums=False)
-        shown_C = []
+        return tuple(check for check in tally.checks() if check.quantity == "hot plate")
+
+    def _for_good(self, cut: CutOff, limit_A: float) -> Check:
+        """Where a loop that stays at its limit takes the display, against what is reached without a fault."""
+        ensemble, display_C = self.module.ensemble, []
         for network, gain in zip(ensemble.networks, ensemble.gain, strict=True):
             try:
-                shown_C.append(float(state_under_current(network, limit_A * gain)[COLD]))
+                display_C.append(float(state_under_current(network, limit_A * gain)[COLD]))
             except ArithmeticError:  # it heats without limit
-                shown_C.append(HOTTEST_C)
-        most_C, reach_C = max(shown_C), cut.high - BEYOND_K
-        stays = Check(
+                display_C.append(HOTTEST_C)
+        most_C, reach_C = max(display_C), cut.high - BEYOND_K
+        hottest = ensemble.corners[display_C.index(most_C)]
+        return Check(
             "display of a loop at its limit", "hard", most_C, reach_C, "°C", math.nan,
             math.nan if most_C > reach_C else None, WARMER,
-            run=Scenario(ensemble.corners[shown_C.index(most_C)].deviations, f"{amperes} A for good"),
+            run=Scenario(hottest.deviations, f"{signed(limit_A, 'g')} A for good"),
         )  # fmt: skip
-        return (*(check for check in tally.checks() if check.quantity == "hot plate"), stays)
 
     def cut_off(
         self, every: Sequence[Stages], limits_A: Limits_A, used_A: Limits_A, may: FaultLimits
@@ -179,13 +197,14 @@ class AnyLoop:
         """The slowest cut-off, of several, that holds every temperature; current limits may come down half-way to what
         is used.
         """
-        narrow_A = narrowed_A(limits_A, used_A)
         begun = [self.stayed(stages) for stages in every]
-        for reaction, number, within_A in itertools.product(REACTIONS_S, range(len(every)), (limits_A, narrow_A)):
-            checks = self._stuck(begun[number], within_A, reaction, may)
-            if all(check.passed for check in checks):
-                return CutOff(*every[number].ends_C, reaction), every[number], within_A, checks
-        return CutOff(*every[-1].ends_C, 0.0), every[-1], within_A, checks
+        for reaction_s in REACTIONS_S:
+            for stages, states in zip(every, begun, strict=True):
+                for within_A in (limits_A, narrowed_A(limits_A, used_A)):
+                    checks = self.stuck(states, within_A, reaction_s, may)
+                    if all(check.passed for check in checks):
+                        return CutOff(*stages.ends_C, reaction_s), stages, within_A, checks
+        return CutOff(*stages.ends_C, 0.0), stages, within_A, checks  # the nearest is not quick enough either
 
     def ends(self, cut: CutOff) -> tuple[State, State]:
         """Each corner whose display has been at the lower, or the upper, cut-off for good."""
@@ -206,7 +225,7 @@ class AnyLoop:
             states.append(State.settled(self.bank.states(nodes_C)))
         return states[0], states[1]
 
-    def _stuck(
+    def stuck(
         self, begun: Sequence[State], limits_A: Limits_A, reaction_s: float, may: FaultLimits
     ) -> tuple[Check, ...]:
         """The limits of a fault with a driver at its limit from either state, and without current afterwards.
@@ -223,6 +242,13 @@ class AnyLoop:
                 tally.add(start_s + times, values, rates=False)
             judged.append(tally.checks())
         return worst_of(judged)
+
+
+def too_wide(checks: Sequence[Check]) -> tuple[float, float]:
+    """By what factors the lower and the upper current limit are too wide for checks; where at most 1, they are not."""
+    share = {(check.quantity, check.upper): check.value / check.limit / ROOM for check in checks}
+    heats = any(check.unit == "°C" and not check.passed for check in checks)
+    return share[RATE, True], max(share[RATE, False], HEATS if heats else 0.0)
 
 
 def narrowed_A(limits_A: Limits_A, used_A: Limits_A) -> Limits_A:

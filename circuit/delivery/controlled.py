@@ -14,7 +14,7 @@ from thermicon.base.words.number_text import signed
 from ..safety.checks import worst_of
 from ..safety.current import single_of_lanes
 from ..safety.demanded import zero_current_s
-from ..safety.demands import SingleFault
+from ..safety.demands import Demands, SingleFault
 from ..safety.display import DisplayCourse, DisplayPlant
 from ..safety.fault_limits import DOSE
 from ..safety.gate import Gate, gate_shown
@@ -30,24 +30,30 @@ BESIDE_K = 0.5
 
 def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> tuple[Gate, ...]:
     """Check set-points that a controller around the rig's module may play in any order; PauseError, RigError."""
+    judged, proof = _together(deliveries, pause_s)
+    if not proof.failed or len(deliveries) == 1:
+        return judged
+    alone = [gate_controlled([delivery], pause_s)[0] for delivery in deliveries]
+    safe = [delivery for delivery, verdict in zip(deliveries, alone, strict=True) if verdict.safe]
+    if len(safe) == len(deliveries):
+        return judged
+    again = iter(gate_controlled(safe, pause_s) if safe else ())  # what is refused by itself is never played
+    return tuple(next(again) if verdict.safe else verdict for verdict in alone)
+
+
+def _together(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> tuple[tuple[Gate, ...], LoopProof]:
+    """The verdicts on set-points that one controller may play in any order, with what was proven of its module."""
     rig, stuck_C = deliveries[0].rig, deliveries[0].device.interval("set-point range")
     courses = [(_beside(delivery, BESIDE_K), _beside(delivery, -BESIDE_K)) for delivery in deliveries]
     verdicts = gate_shown(courses, rig, stuck_C=stuck_C, pause_s=pause_s, module=True)
     dose_min = max(_dose_min(verdict) for verdict in verdicts)
     proof = LoopProof.of(deliveries, [course for pair in courses for course in pair], dose_min)
     under = DisplayPlant.of(rig, stuck_C)
-    judged = [
+    joined = tuple(
         _joined(verdict, proof, number, _rest_s(under, delivery, proof.unpowered_C))
         for number, (delivery, verdict) in enumerate(zip(deliveries, verdicts, strict=True))
-    ]
-    if not proof.failed or len(judged) == 1:
-        return tuple(judged)
-    alone = [gate_controlled([delivery], pause_s)[0] for delivery in deliveries]
-    if all(verdict.safe for verdict in alone):
-        return tuple(judged)
-    safe = [delivery for delivery, verdict in zip(deliveries, alone, strict=True) if verdict.safe]
-    together = iter(gate_controlled(safe, pause_s) if safe else ())  # what is refused by itself is never played
-    return tuple(next(together) if verdict.safe else verdict for verdict in alone)
+    )
+    return joined, proof
 
 
 def _joined(verdict: Gate, proof: LoopProof, number: int, rest_s: float | None) -> Gate:
@@ -56,24 +62,28 @@ def _joined(verdict: Gate, proof: LoopProof, number: int, rest_s: float | None) 
     single = single_of_lanes(ensemble, proof.drives[number], limits)
     once = worst_of([worst_of_lanes(single.tallies), verdict.once])
     shortest_s = None if proof.failed else repeated.shortest_pause_s
-    hangs, inside = verdict.demands.faults[0], proof.inside
-    start = SingleFault("unpowered loop", "green", {"display_C": proof.unpowered_C, "rest_s": rest_s})
-    dose_min = _dose_min(verdict) / max(1, repeated.plays) + proof.dose_min
-    demands = replace(
-        proof.demands,
-        watchdog_s=verdict.demands.watchdog_s,
-        rest_before_first_play_s=rest_s,
-        pause_at_least_s=shortest_s,
-        zero_current_at_most_s=zero_current_s(ensemble, limits, proof.warmest, dose_min),
-        faults=(hangs, start, *inside, *proof.demands.faults),
-    )
     return replace(
         verdict,
         scenarios=verdict.scenarios + len(ensemble.corners),
         checks=(*worst_of([once, verdict.checks]), *proof.failed),
         once=(*once, *proof.failed),
         repeated=replace(repeated, shortest_pause_s=shortest_s),
-        demands=demands,
+        demands=_demands(verdict, proof, rest_s, shortest_s),
+    )
+
+
+def _demands(verdict: Gate, proof: LoopProof, rest_s: float | None, pause_s: float | None) -> Demands:
+    """What was proven of the module, with the times that its display demands and the faults of that."""
+    hangs = verdict.demands.faults[0]
+    start = SingleFault("unpowered loop", "green", {"display_C": proof.unpowered_C, "rest_s": rest_s})
+    dose_min = _dose_min(verdict) / max(1, verdict.repeated.plays) + proof.dose_min
+    return replace(
+        proof.demands,
+        watchdog_s=verdict.demands.watchdog_s,
+        rest_before_first_play_s=rest_s,
+        pause_at_least_s=pause_s,
+        zero_current_at_most_s=zero_current_s(proof.module.ensemble, verdict.limits, proof.warmest, dose_min),
+        faults=(hangs, start, *proof.inside, *proof.demands.faults),
     )
 
 

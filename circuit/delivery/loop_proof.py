@@ -66,17 +66,19 @@ class LoopProof:
         rig = deliveries[0].rig
         module, plays = FollowingModule.of(looped(rig)), [samples_of(delivery) for delivery in deliveries]
         loops, unpowered_C = AnyLoop(module, past_most_cooling(module.rigs)), module.unpowered_C()
-        begun, swings = TakeOver.of(loops, plays, [unpowered_C, *(ends_of(course.display_C) for course in courses)])
-        limits_A = begun.limits_A
+        without_fault_C = [unpowered_C, *(ends_of(course.display_C) for course in courses)]
+        taken_over, moving = TakeOver.of(loops, plays, without_fault_C)
         drives = [module.drives(play) for play in plays]
-        flows = np.concatenate([drive.current_A for drive in drives], axis=1)
-        used_A = min(0.0, float(flows.min())), max(0.0, float(flows.max()))
+        used_A = _used_A(drives)
         skin = HeldSkin.of(rig, FaultLimits.of(rig.limits, dose_before_min))
-        every = _stages(loops, plays, courses, begun, skin, narrowed_A(limits_A, used_A))
-        cut, stages, limits_A, stuck = loops.cut_off(every, limits_A, used_A, skin.limits)
-        beyond = _with_ways_out(stages, skin, deliveries, begun.played_C)
-        loop, swung = _judged_loop(loops, plays, limits_A, cut, (LATE_S,) if rig.controller is None else DELAYS_S)
-        failed = tuple(check for check in (*swings, *beyond, *stuck, *(() if beyond else swung)) if not check.passed)
+        around = _stages(loops, plays, courses, taken_over, skin, narrowed_A(taken_over.limits_A, used_A))
+        cut, stages, limits_A, stuck = loops.cut_off(around, taken_over.limits_A, used_A, skin.limits)
+        reaching = _with_ways_out(stages, skin, deliveries, taken_over.played_C)
+        delays_s = (LATE_S,) if rig.controller is None else DELAYS_S
+        loop, swinging = _judged_loop(loops, plays, limits_A, cut, delays_s)
+        if reaching:  # there is no cut-off around the plays that a swing could reach
+            swinging = ()
+        failed = tuple(check for check in (*moving, *reaching, *stuck, *swinging) if not check.passed)
         polarity, lost = _wiring(module, rig, plays, cut)
         demands = Demands(
             watchdog_s=0.0, cut_off_display_C=cut, polarity_check=polarity, rest_before_first_play_s=None,
@@ -107,20 +109,26 @@ def _beyond_s(display_C: Array, step_s: float, inside_C: Span, since_s: float = 
     return stay.beyond_s
 
 
+def _used_A(drives: Sequence[LaneDrives]) -> Limits_A:
+    """Between which currents drives are, and no current."""
+    flows_A = np.concatenate([drive.current_A for drive in drives], axis=1)
+    return min(0.0, float(flows_A.min())), max(0.0, float(flows_A.max()))
+
+
 def _stages(
-    loops: AnyLoop, plays: Sequence[Samples], courses: Sequence[DisplayCourse], begun: TakeOver, skin: HeldSkin,
+    loops: AnyLoop, plays: Sequence[Samples], courses: Sequence[DisplayCourse], taken_over: TakeOver, skin: HeldSkin,
     narrow_A: Limits_A,
 ) -> list[Stages]:  # fmt: skip
     """Cut-offs around what displays reach, the farther ones first: one each where that suffices, else two."""
     limits, lasting = loops.module.ensemble.rig.limits, skin.lasting_C()
-    reach_C, bank = begun.reach_C, loops.within(narrow_A)
+    reach_C, bank = taken_over.reach_C, loops.within(narrow_A)
     slow_C = (taken_over_C(loops, bank, level_C, is_wound_up=False) for level_C in baselines_C(plays))
     single = [one_stage(limits, reach_C, lasting, beyond_K) for beyond_K in BEYONDS_K]
     if not single[0].failed:  # what fails does not depend on how far beyond a cut-off acts
         return single
     inside, period = healthy_C(lasting), 1.0 / loops.module.ensemble.rig.driver.update_Hz
     stays_s = [_beyond_s(course.display_C[np.newaxis], course.step_s, inside) for course in courses]
-    stays_s += [_beyond_s(display_C, period, inside, since_s=0.0) for display_C in (*begun.displays_C, *slow_C)]
+    stays_s += [_beyond_s(display_C, period, inside, since_s=0.0) for display_C in (*taken_over.displays_C, *slow_C)]
     return [two_stages(limits, skin, reach_C, lasting, max(stays_s), beyond_K) for beyond_K in BEYONDS_K]
 
 
@@ -154,22 +162,15 @@ def _judged_loop(
 ) -> tuple[Loop, tuple[Check, ...]]:
     """The rig's loop, what it may differ by, and the longest delay that does not swing; then a failed check, if any."""
     bank = loops.within(limits_A)
-    middle_K = float(plays[0].command.mean()) + ZERO_C_IN_K
-    heat_W_per_A = bank.plates[:, ALPHA] * middle_K - bank.plates[:, LOWEST_A] * bank.plates[:, RESISTANCE]
-    speed = heat_W_per_A * loops.module.ensemble.gain / bank.plates[:, COLD_J_PER_K]
-    rigs = sorted({0, int(speed.argmin()), int(speed.argmax())})
+    rigs = _slowest_and_fastest(loops, bank, float(plays[0].command.mean()))
     slew = max(float(np.abs(np.diff(play.command)).max()) * play.rate_Hz for play in plays)
     own = loops.module.ensemble.rig.controller
     assert own is not None
-
-    def band(gain: float, low: float) -> tuple[float, float]:
-        return float(f"{low * gain:.4g}"), float(f"{(1.0 + PLAYING) * gain:.4g}")
-
     kp, ki = own.kp_A_per_K, own.ki_A_per_Ks
-    for delay in delays_s:
+    for delay_s in delays_s:
         loop = Loop(
-            band(kp, WEAKER), band(ki, WEAKER), own.kd_As_per_K, delay, own.lag_s, SENSOR_K, float(f"{slew:.3g}"),
-            band(kp, 1.0 - PLAYING), band(ki, 1.0 - PLAYING), own.lag_s,
+            _band(kp, WEAKER), _band(ki, WEAKER), own.kd_As_per_K, delay_s, own.lag_s, SENSOR_K, float(f"{slew:.3g}"),
+            _band(kp, 1.0 - PLAYING), _band(ki, 1.0 - PLAYING), own.lag_s,
         )  # fmt: skip
         swings = (_swing(loops, bank, rigs, loop, play, cut) for play in plays)
         failed = tuple(itertools.islice((check for check in swings if not check.passed), 1))
@@ -178,32 +179,50 @@ def _judged_loop(
     return loop, failed
 
 
+def _slowest_and_fastest(loops: AnyLoop, bank: Bank, display_C: float) -> list[int]:
+    """The rig as given, and the corners whose display a current moves the least and the most."""
+    heat_W_per_A = (
+        bank.plates[:, ALPHA] * (display_C + ZERO_C_IN_K) - bank.plates[:, LOWEST_A] * bank.plates[:, RESISTANCE]
+    )
+    speed = heat_W_per_A * loops.module.ensemble.gain / bank.plates[:, COLD_J_PER_K]
+    return sorted({0, int(speed.argmin()), int(speed.argmax())})
+
+
+def _band(gain: float, low: float) -> tuple[float, float]:
+    """From a share of a gain to the greatest with which a loop may play."""
+    return float(f"{low * gain:.4g}"), float(f"{(1.0 + PLAYING) * gain:.4g}")
+
+
 def _swing(loops: AnyLoop, bank: Bank, rigs: Sequence[int], loop: Loop, play: Samples, cut: CutOff) -> Check:
     """How far a play leaves the display beyond its set-points, or swinging after the last of them, at worst."""
+    period_s, end_s = 1.0 / loops.module.ensemble.rig.driver.update_Hz, float(play.time_s[-1])
+    levels_C: Array = updates_of(play.until(end_s + SETTLING_S), period_s)
+    displays_C = _followed_C(loops, bank, rigs, loop, levels_C)
+    beyond_K = max(0.0, float(displays_C.max()) - levels_C.max(), levels_C.min() - float(displays_C.min()))
+    late_C = displays_C[:, -max(2, round(1.0 / period_s)) :]
+    swing_K = float(np.ptp(late_C, axis=1).max())
+    room_K = min(cut.high - levels_C.max(), levels_C.min() - cut.low) - SENSOR_K
+    value, limit = (beyond_K, room_K) if beyond_K > room_K or swing_K <= SWING_K else (swing_K, SWING_K)
+    since_s = end_s if value > limit else None
+    gains = f"{loop.kp_A_per_K[1]:g} A/K, {loop.ki_A_per_Ks[1]:g} A/(K·s)"
+    what = f"a loop of {gains} and a lag of {loop.sensor_lag_at_most_s:g} s"
+    cure = "so that its cut-off would act; use a smaller controller.kp_A_per_K or a faster sensor"
+    return Check("swing of the display", "hard", value, limit, "K", end_s, since_s, cure, run=Scenario(what))
+
+
+def _followed_C(loops: AnyLoop, bank: Bank, rigs: Sequence[int], loop: Loop, levels_C: Array) -> Array:
+    """Displays (lanes, updates) of some corners under the weakest and the strongest loop, with wrong sensors."""
     module = loops.module
-    period = 1.0 / module.ensemble.rig.driver.update_Hz
-    held: Array = updates_of(play.until(float(play.time_s[-1]) + SETTLING_S), period)
-    goals = np.array([held - SENSOR_K, held + SENSOR_K])
+    goals = np.array([levels_C - SENSOR_K, levels_C + SENSOR_K])
     lanes = list(itertools.product(rigs, range(len(goals))))
     rests = [rest_of_a_loop(module.rigs[rig], float(goals[goal, 0])) for rig, goal in lanes]
     rig_of, goal_of = np.array(lanes, dtype=np.int64).T.copy()
     bias, states = np.array([rest[0] for rest in rests]), bank.states([rest[1] for rest in rests])
     bias = np.clip(bias, bank.plates[rig_of, LOWEST_A], bank.plates[rig_of, HIGHEST_A])
-    beyond, swing = 0.0, 0.0
+    displays_C, period_s = [], 1.0 / module.ensemble.rig.driver.update_Hz
     for kp, ki in zip(loop.kp_A_per_K, loop.ki_A_per_Ks, strict=True):
         flowing = np.zeros((len(bank.count), 5))
         flowing[:, [KP, KI, KD]] = np.outer(module.ensemble.gain, [kp, ki, loop.kd_As_per_K])
         flowing[:, LAG_S], flowing[:, DELAY_S] = loop.sensor_lag_at_most_s, loop.delay_at_most_s
-        _, display, _ = run_regulate(bank, rig_of, goal_of, period, goals, flowing, bias, states)
-        beyond = max(beyond, float(display.max()) - held.max(), held.min() - float(display.min()))
-        late = display[:, -max(2, round(1.0 / period)) :]
-        swing = max(swing, float(np.ptp(late, axis=1).max()))
-    room = min(cut.high - held.max(), held.min() - cut.low) - SENSOR_K
-    value, limit = (beyond, room) if beyond > room or swing <= SWING_K else (swing, SWING_K)
-    since = float(play.time_s[-1]) if value > limit else None
-    gains = f"{loop.kp_A_per_K[1]:g} A/K, {loop.ki_A_per_Ks[1]:g} A/(K·s)"
-    what = f"a loop of {gains} and a lag of {loop.sensor_lag_at_most_s:g} s"
-    cure = "so that its cut-off would act; use a smaller controller.kp_A_per_K or a faster sensor"
-    return Check(
-        "swing of the display", "hard", value, limit, "K", float(play.time_s[-1]), since, cure, run=Scenario(what)
-    )
+        displays_C.append(run_regulate(bank, rig_of, goal_of, period_s, goals, flowing, bias, states)[1])
+    return np.concatenate(displays_C)

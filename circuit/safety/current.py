@@ -22,9 +22,9 @@ from ..solver.batch_inputs import Bank, Intervals, State, run_on
 from ..solver.drive import Drive
 from ..solver.network import unpowered
 from ..solver.steady import state_under_current
-from .checks import Before, Check, Scenario
+from .checks import Before, Scenario
 from .demanded import demanded
-from .demands import Demands
+from .demands import Demanded
 from .ensemble import Ensemble, LaneDrives
 from .plant import ENDING_ROWS_S, LATE_S, OFF_ROWS_S, Future, Plant, Single, Stretch
 from .playmap import PlayMap, least_bound
@@ -217,7 +217,7 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         repeating: Repeating[CurrentPlay, State],
         tallies: Sequence[list[Tally]],
         shortest_s: float | None,
-    ) -> tuple[float | None, list[tuple[Demands, tuple[Check, ...]]]]:
+    ) -> Demanded:
         """Demands against a host that stops, a driver that is stuck, and faults of a first play."""
         return demanded(self, [single for (single,) in singles], recovered_s, repeating, tallies, shortest_s)
 

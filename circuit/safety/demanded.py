@@ -8,10 +8,10 @@ with the longest.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from itertools import repeat
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +20,7 @@ from ..rig.rules import Limits
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 from .checks import Check, colour_of
-from .demands import CutOff, Demands, HeldCutOff, SingleFault
+from .demands import CutOff, Demanded, Demands, HeldCutOff, SingleFault
 from .display import for_good_C
 from .ensemble import Ensemble
 from .exposure import cem43_min
@@ -43,8 +43,8 @@ if TYPE_CHECKING:
 
     Singles = Sequence[Single[CurrentPlay, State]]
 
-Found = tuple[Demands, tuple[Check, ...]]
-"""What the hardware must prevent, and checks that fail where it cannot."""
+NOT_ASKED_S = 0.0, 0.0
+"""Times of watchdog and cut-off where neither is asked for."""
 
 
 def demanded(
@@ -54,43 +54,25 @@ def demanded(
     repeating: Repeating[CurrentPlay, State],
     tallies: Sequence[list[Tally]],
     shortest_s: float | None,
-) -> tuple[float | None, list[Found]]:
+) -> Demanded:
     """The shortest pause after which faults can be prevented in practice, and what prevents them in any play after."""
-    every = [tally for own in tallies for tally in own] + [single.tallies[0] for single in singles]
-    dose_before_min = max(float(tally.summed(DOSE).max()) for tally in every)
-    may = FaultLimits.of(repeating.limits, dose_before_min)
-    faults = []
-    for single in singles:
-        drive, rest_A = single.play.drive, float(single.play.rest_A)
-        assert isinstance(drive, Drive)
-        faults.append(Faulty(plant.ensemble, drive, rest_A, single.start, repeating.limits, may))
-    once = [one.moments() for one in faults]
-    slow = limited(faults, once)
+    judged = [*itertools.chain.from_iterable(tallies), *(single.tallies[0] for single in singles)]
+    dose_before_min = max(float(tally.summed(DOSE).max()) for tally in judged)
     begin_s = LONGEST_PAUSE_S if shortest_s is None else shortest_s
-    skin = HeldSkin.of(plant.rig, may)
-    lasting = skin.lasting_C()
-    beginning = Beginning.of(repeating, begin_s, max(recovered_s))
-    first_s = longest_rest_s(faults, beginning.left, healthy_C(lasting))
-    search = Search(
-        singles,
-        [replace(one, limit_A=slow.limit_A) for one in faults],
-        replace(beginning, least_s=float(math.ceil(first_s)) if math.isfinite(first_s) else 0.0),
-        skin,
-        lasting,
-        first_s,
-        slow,
-        least_fall_K(plant.ensemble, where_tests_begin(plant.ensemble, [single.start for single in singles], once)),
-        max(begin_s, *recovered_s),
-    ).chosen(begin_s)
+    search = Search.of(plant, singles, repeating, dose_before_min, begin_s, max(recovered_s))
     if shortest_s is None:
-        return None, search.completed(search.in_plays(begin_s) or [], begin_s, None)
+        return search.completed(search.demands(begin_s), begin_s, is_safe=False)
     pause_s, in_plays = search.shortest(shortest_s)
-    return pause_s, search.completed(in_plays, pause_s, pause_s)
+    return search.completed(in_plays, pause_s, is_safe=True)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Search:
-    """A search for demands on drives of a set, between pauses in s of which the longest lets all recover.
+    """A search for the shortest pause, up to one in which all recover, after which faults are prevented in practice.
+
+    Its steps, of a pause in s: between which states plays begin (`starts`), where the display then goes (`reach`), the
+    cut-offs around that (`cut_off_around`), whether watchdog and cut-off suffice that act within a time (`suffices`),
+    how quickly they must act (`demands_of`), and the shortest pause for which that is practical (`shortest`).
 
     `lasting` is where the display may stay, beyond which a first rest leaves it for `first_s`; `slow` is the current
     limit of the driver, `fall_K` how far the display falls in a test of the polarity. Cut-offs are `beyond_K` beyond
@@ -109,13 +91,58 @@ class Search:
     beyond_K: float = BEYONDS_K[0]
     hardest: Sequence[list[int]] = ()
     _starts: dict[float, Starts[State]] = field(default_factory=dict)
-    _shown: dict[float, Shown] = field(default_factory=dict)
+    _reach: dict[float, Shown] = field(default_factory=dict)
     _rests: dict[float, float | None] = field(default_factory=dict)
+
+    @staticmethod
+    def of(
+        plant: CurrentPlant,
+        singles: Singles,
+        repeating: Repeating[CurrentPlay, State],
+        dose_before_min: float,
+        begin_s: float,
+        recovery_s: float,
+    ) -> Search:
+        """For drives that have recovered after a time in s, with pauses from `begin_s` on."""
+        may = FaultLimits.of(repeating.limits, dose_before_min)
+        faults = [_faulty(plant.ensemble, single, repeating.limits, may) for single in singles]
+        moments = [faulty.moments() for faulty in faults]
+        slow = limited(faults, moments)
+        skin = HeldSkin.of(plant.rig, may)
+        lasting = skin.lasting_C()
+        beginning = Beginning.of(repeating, begin_s, recovery_s)
+        first_s = longest_rest_s(faults, beginning.left, healthy_C(lasting))
+        tests = where_tests_begin(plant.ensemble, [single.start for single in singles], moments)
+        return Search(
+            singles,
+            [replace(faulty, limit_A=slow.limit_A) for faulty in faults],
+            replace(beginning, least_s=float(math.ceil(first_s)) if math.isfinite(first_s) else 0.0),
+            skin,
+            lasting,
+            first_s,
+            slow,
+            least_fall_K(plant.ensemble, tests),
+            max(begin_s, recovery_s),
+        ).placed(begin_s)
+
+    def placed(self, begin_s: float) -> Search:
+        """The same with cut-offs as far out as a driver stuck before a play allows, and the hardest corners."""
+        searches = [replace(self, beyond_K=beyond_K) for beyond_K in BEYONDS_K]
+        react_s = [search.at_rest(self.longest_s)[0].react_within_s for search in searches]
+        # The farthest that suffices, or the slowest.
+        search = searches[int(np.argmax(np.minimum(react_s, PRACTICAL_S)))]
+        ends_C = search.cut_off_around(begin_s).ends_C
+        return replace(search, hardest=[faulty.hardest(ends_C, PRACTICAL_S) for faulty in search.faulty(begin_s)])
 
     @property
     def limits(self) -> Limits:
         """The limits of the rig, or those in their place."""
         return self.beginning.repeating.limits
+
+    @property
+    def numbers(self) -> range:
+        """The numbers of the drives."""
+        return range(len(self.faults))
 
     def starts(self, pause_s: float) -> Starts[State]:
         """The states between which plays begin."""
@@ -126,7 +153,7 @@ class Search:
     def faulty(self, pause_s: float) -> list[Faulty]:
         """Drives whose plays begin between the bounds of a pause."""
         bounds = self.starts(pause_s).bounds
-        return [replace(one, bounds=bounds) for one in self.faults]
+        return [replace(faulty, bounds=bounds) for faulty in self.faults]
 
     def rest_s(self, pause_s: float) -> float | None:
         """The rest before a first play, after which no play passes a limit; None: 10 min do not suffice."""
@@ -134,92 +161,112 @@ class Search:
             self._rests[pause_s] = self.beginning.kept_s(self.starts(pause_s), pause_s)
         return self._rests[pause_s]
 
-    def shown(self, pause_s: float) -> Shown:
+    def reach(self, pause_s: float) -> Shown:
         """What the display reaches without a fault, and for how long in s it is beyond where it may stay."""
-        if pause_s not in self._shown:
-            singles = [check.value for one in self.singles for check in one.checks if check.quantity == "display"]
-            once = Shown(min(singles), max(singles), self.first_s)
-            later = (shown_between(one, healthy_C(self.lasting), pause_s) for one in self.faulty(pause_s))
-            self._shown[pause_s] = Shown.of([once, *later])
-        return self._shown[pause_s]
+        if pause_s not in self._reach:
+            checks = [check for single in self.singles for check in single.checks if check.quantity == "display"]
+            levels = [check.value for check in checks]
+            once = Shown(min(levels), max(levels), self.first_s)
+            later = (shown_between(faulty, healthy_C(self.lasting), pause_s) for faulty in self.faulty(pause_s))
+            self._reach[pause_s] = Shown.of([once, *later])
+        return self._reach[pause_s]
 
-    def stages(self, pause_s: float, beyond_K: float | None = None) -> Stages:
-        """The cut-offs around plays with a pause between them: one where the longest pause makes that suffice."""
-        beyond = self.beyond_K if beyond_K is None else beyond_K
-        shown = self.shown(pause_s)
-        first = one_stage(self.limits, shown.reach_C, self.lasting, beyond)
-        if not first.failed:
-            return first
-        if not one_stage(self.limits, self.shown(self.longest_s).reach_C, self.lasting, beyond).failed:
-            return first
-        return two_stages(self.limits, self.skin, shown.reach_C, self.lasting, shown.beyond_s, beyond)
-
-    def chosen(self, begin_s: float) -> Search:
-        """The search with cut-offs as far out as suffices for a driver stuck before a play, in the hardest corners."""
-        first = self.faulty(self.longest_s)[0]
-        react_s = [found_at_rest(first, self.stages(self.longest_s, one).ends_C)[0].react_within_s for one in BEYONDS_K]
-        # The farthest that suffices, or the slowest.
-        beyond_K = BEYONDS_K[int(np.argmax(np.minimum(react_s, PRACTICAL_S)))]
-        ends_C = self.stages(begin_s, beyond_K).ends_C
-        hardest = [one.hardest(ends_C, PRACTICAL_S) for one in self.faulty(begin_s)]
-        return replace(self, beyond_K=beyond_K, hardest=hardest)
+    def cut_off_around(self, pause_s: float) -> Stages:
+        """The cut-offs around what the display reaches: one where the longest pause makes that suffice, else two."""
+        reach = self.reach(pause_s)
+        single = one_stage(self.limits, reach.reach_C, self.lasting, self.beyond_K)
+        if not single.failed:
+            return single
+        if not one_stage(self.limits, self.reach(self.longest_s).reach_C, self.lasting, self.beyond_K).failed:
+            return single
+        return two_stages(self.limits, self.skin, reach.reach_C, self.lasting, reach.beyond_s, self.beyond_K)
 
     def suffices(self, number: int, pause_s: float, within_s: Span) -> bool:
-        """Whether a watchdog and a cut-off that act in time keep a drive safe after a pause, in the hardest corners."""
-        stages = self.stages(pause_s)
+        """Whether a watchdog and a cut-off that act in time keep a drive safe after a pause, in the hardest corners.
+
+        A cut-off must let the display pass in any case; a time of 0 asks for no more.
+        """
+        stages = self.cut_off_around(pause_s)
         if stages.failed:
             return False
-        if not any(within_s):
+        if within_s == NOT_ASKED_S:
             return True
+        watchdog_s, react_s = within_s
         faulty = self.faulty(pause_s)[number].at(self.hardest[number])
-        cut = CutOff(*stages.ends_C, within_s[1])
-        return bool(faulty.beyond_K(faulty.moments(), within_s[0], cut).max() <= 0.0)
+        beyond_K = faulty.beyond_K(faulty.moments(), watchdog_s, CutOff(*stages.ends_C, react_s))
+        return bool(beyond_K.max() <= 0.0)
 
-    def in_plays(self, pause_s: float, needed: Sequence[Span] | None = None) -> list[InPlays] | None:
-        """Demands of each drive; None as soon as one needs something quicker than in `needed`."""
-        ends_C, faulty, demands = self.stages(pause_s).ends_C, self.faulty(pause_s), {}
-        numbers = range(len(self.faults))
-        for number in sorted(numbers, key=lambda number: not (needed and any(needed[number]))):  # may not suffice first
-            demands[number] = found_in_plays(faulty[number], self.hardest[number], ends_C)
-            if needed and np.less(demands[number].within_s, needed[number]).any():
-                return None
-        return [demands[number] for number in numbers]
+    def demands_of(self, number: int, pause_s: float) -> InPlays:
+        """How quickly watchdog and cut-off must act in plays of a drive after a pause."""
+        ends_C = self.cut_off_around(pause_s).ends_C
+        return found_in_plays(self.faulty(pause_s)[number], self.hardest[number], ends_C)
+
+    def demands(self, pause_s: float) -> list[InPlays]:
+        """How quickly they must act in plays of each drive."""
+        return [self.demands_of(number, pause_s) for number in self.numbers]
+
+    def at_rest(self, pause_s: float) -> tuple[CutOff, SingleFault]:
+        """How quickly a cut-off must act before plays, which is the same for all drives."""
+        return found_at_rest(self.faulty(pause_s)[0], self.cut_off_around(pause_s).ends_C)
 
     def shortest(self, shortest_s: float) -> tuple[float, list[InPlays]]:
         """The shortest pause from one on with practical demands, and these."""
-        numbers, within = range(len(self.faults)), (PRACTICAL_S, PRACTICAL_S)
-        longest_s = self.longest_s
-        needed = [(0.0, 0.0) if self.suffices(k, shortest_s, within) else within for k in numbers]
-        if not all(self.suffices(k, longest_s, needed[k]) for k in numbers) and not self.stages(longest_s).failed:
-            at_best = self.in_plays(longest_s) or []
-            needed = [
-                (min(most[0], one.within_s[0]), min(most[1], one.within_s[1]))
-                for most, one in zip(needed, at_best, strict=True)
-            ]
-        pause_s = lengthened_s(
-            shortest_s, longest_s, lambda longer_s: all(map(self.suffices, numbers, repeat(longer_s), needed))
-        )
+        needed_s = self.needed_s(shortest_s)
+
+        def suffice(pause_s: float) -> bool:
+            return all(self.suffices(number, pause_s, needed_s[number]) for number in self.numbers)
+
+        pause_s = lengthened_s(shortest_s, self.longest_s, suffice)
         added_s = max(PAUSE_STEP_S, 0.02 * pause_s)
-        while pause_s < longest_s:
-            in_plays = self.in_plays(pause_s, needed)
+        while pause_s < self.longest_s:  # a longer one where other corners, or the rest before plays, need it
+            in_plays = self.demands_within(pause_s, needed_s)
             if in_plays is not None and self.rest_s(pause_s) is not None:
                 return pause_s, in_plays
             longer_s = math.ceil((pause_s + added_s) / PAUSE_STEP_S) * PAUSE_STEP_S
-            pause_s, added_s = min(longest_s, longer_s), 2.0 * added_s
-        return pause_s, self.in_plays(pause_s) or []
+            pause_s, added_s = min(self.longest_s, longer_s), 2.0 * added_s
+        return pause_s, self.demands(pause_s)
 
-    def completed(self, in_plays: Sequence[InPlays], pause_s: float, said_s: float | None) -> list[Found]:
-        """The whole demands on each drive, and what fails; `said_s` is the pause where one is safe."""
-        stages, failed = self.stages(pause_s), tuple[Check, ...]()
-        if stages.failed and said_s is not None:
+    def needed_s(self, shortest_s: float) -> list[Span]:
+        """How quickly watchdog and cut-off of each drive may have to act: in practice, or as the longest pause needs.
+
+        Of a drive that is safe with them after the shortest pause nothing is asked, since longer ones need less.
+        """
+        practical_s = PRACTICAL_S, PRACTICAL_S
+        suffice = [self.suffices(number, shortest_s, practical_s) for number in self.numbers]
+        needed_s = [NOT_ASKED_S if already else practical_s for already in suffice]
+        if self.cut_off_around(self.longest_s).failed:
+            return needed_s
+        if all(self.suffices(number, self.longest_s, needed_s[number]) for number in self.numbers):
+            return needed_s
+        at_best_s = [in_plays.within_s for in_plays in self.demands(self.longest_s)]
+        return [
+            (min(asked_s[0], best_s[0]), min(asked_s[1], best_s[1]))
+            for asked_s, best_s in zip(needed_s, at_best_s, strict=True)
+        ]
+
+    def demands_within(self, pause_s: float, needed_s: Sequence[Span]) -> list[InPlays] | None:
+        """Demands of each drive; None as soon as one needs something quicker than in `needed_s`."""
+        demands = dict[int, InPlays]()
+        for number in sorted(self.numbers, key=lambda number: needed_s[number] == NOT_ASKED_S):  # may not suffice first
+            demands[number] = self.demands_of(number, pause_s)
+            if np.less(demands[number].within_s, needed_s[number]).any():
+                return None
+        return [demands[number] for number in self.numbers]
+
+    def completed(self, in_plays: Sequence[InPlays], pause_s: float, is_safe: bool) -> Demanded:
+        """The whole demands on each drive after a pause, which is one of them where plays are safe, and what fails."""
+        stages, resting = self.cut_off_around(pause_s), self.at_rest(pause_s)
+        rest_s = self.rest_s(pause_s) if is_safe else None
+        pause_at_least_s = pause_s if is_safe else None
+        demands = [
+            self._whole(number, drive_in_plays, resting, stages, rest_s, pause_at_least_s)
+            for number, drive_in_plays in enumerate(in_plays)
+        ]
+        failed = tuple[Check, ...]()
+        if stages.failed and is_safe:
             thermode_C = for_good_C(self.skin.modes, self.limits)
             failed = with_ways_out_of_drives(stages.failed, self._as_given_C(), thermode_C)
-        rest_s = None if said_s is None else self.rest_s(pause_s)
-        resting = found_at_rest(self.faulty(pause_s)[0], stages.ends_C)
-        found = []
-        for number, one in enumerate(in_plays):
-            found.append((self._demands(number, one, resting, stages, rest_s, said_s), failed))
-        return found
+        return Demanded(pause_at_least_s, demands, failed)
 
     def _as_given_C(self) -> Span:
         """Between which temperatures in °C the display of the rig as given is in single plays."""
@@ -228,7 +275,7 @@ class Search:
         levels = [check.value for check in checks if check.quantity == "display"]
         return min(levels), max(levels)
 
-    def _demands(
+    def _whole(
         self,
         number: int,
         in_plays: InPlays,
@@ -238,31 +285,43 @@ class Search:
         pause_s: float | None,
     ) -> Demands:
         """Demands of a drive on the hardware, with the rest before a first play and the pause after any."""
-        single, faulty = self.singles[number], self.faults[number]
-        cut_off, stuck = min((in_plays.cut_off, in_plays.stuck), resting, key=lambda each: each[0].react_within_s)
-        polarity, swapped = polarity_check(faulty, self.fall_K)
-        findings = self.beginning.unpowered(number, 0.0)
-        first = {"finding": next(iter(findings), None), "rest_s": rest_s}
-        begins = SingleFault("unpowered", colour_of(findings), first)
-        faults = [in_plays.hangs, begins, swapped]
-        if stages.held is not None:
-            faults.append(inside_fault(stages.held, cut_off))
-        slow = self.slow
-        if slow.limit_A is not None:
-            told = {"rate": slow.rate_K_per_s, "kept": slow.kept, "limit_A": slow.limit_A}
-            faults.append(SingleFault("stuck fast", "red", told))
-        dose_min = float(single.tallies[0].summed(DOSE).max()) + self.skin.worst_dose_min(stages)
+        cut_off, stuck = min((in_plays.cut_off, in_plays.stuck), resting, key=lambda pair: pair[0].react_within_s)
+        polarity, swapped = polarity_check(self.faults[number], self.fall_K)
+        inside = () if stages.held is None else (inside_fault(stages.held, cut_off),)
+        begins = self._begins(number, rest_s)
+        dose_min = float(self.singles[number].tallies[0].summed(DOSE).max()) + self.skin.worst_dose_min(stages)
+        ensemble, left = self.faults[number].ensemble, self.beginning.left[0]
         return Demands(
             watchdog_s=in_plays.watchdog_s,
             cut_off_display_C=cut_off,
             polarity_check=polarity,
             rest_before_first_play_s=rest_s,
             pause_at_least_s=pause_s,
-            zero_current_at_most_s=zero_current_s(faulty.ensemble, self.limits, self.beginning.left[0], dose_min),
-            faults=(*faults, stuck),
+            zero_current_at_most_s=zero_current_s(ensemble, self.limits, left, dose_min),
+            faults=(in_plays.hangs, begins, swapped, *inside, *self._fast(), stuck),
             held_cut_off_display_C=stages.held,
-            current_limit_A=slow.limit_A,
+            current_limit_A=self.slow.limit_A,
         )
+
+    def _begins(self, number: int, rest_s: float | None) -> SingleFault:
+        """A first play at once on a display that was without power."""
+        findings = self.beginning.unpowered(number, 0.0)
+        told = {"finding": next(iter(findings), None), "rest_s": rest_s}
+        return SingleFault("unpowered", colour_of(findings), told)
+
+    def _fast(self) -> tuple[SingleFault, ...]:
+        """A driver that moves the skin too fast where it gets stuck, if it does."""
+        if self.slow.limit_A is None:
+            return ()
+        told = {"rate": self.slow.rate_K_per_s, "kept": self.slow.kept, "limit_A": self.slow.limit_A}
+        return (SingleFault("stuck fast", "red", told),)
+
+
+def _faulty(ensemble: Ensemble, single: Single[CurrentPlay, State], limits: Limits, may: FaultLimits) -> Faulty:
+    """A drive in which faults happen, played from rest."""
+    drive, rest_A = single.play.drive, float(single.play.rest_A)
+    assert isinstance(drive, Drive)
+    return Faulty(ensemble, drive, rest_A, single.start, limits, may)
 
 
 def inside_fault(held: HeldCutOff, cut_off: CutOff) -> SingleFault:

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
+from .checks import Check
+
 How = Literal["held", "proven", "stated", "missing"]
 """How a demand is met: by what plays (`held`), by a test before the first play (`proven`), by a person, who says so
 (`stated`), or not at all (`missing`), which is refused."""
@@ -203,6 +205,18 @@ class Demands:
     def to_dict(self) -> dict[str, object]:
         """All of it in the form of a sidecar's `hardware_must_prevent`."""
         return {**asdict(self), "faults": [fault.to_dict() for fault in self.faults]}
+
+
+@dataclass(frozen=True, slots=True)
+class Demanded:
+    """What keeps drives safe that follow each other: demands on each, and checks that fail where none suffice.
+
+    `pause_s` is the shortest pause with which these can be met; None where no pause is safe.
+    """
+
+    pause_s: float | None
+    demands: Sequence[Demands]
+    failed: tuple[Check, ...]
 
 
 DEMANDS = (

@@ -22,7 +22,7 @@ from ..rig.rules import Limits
 from ..solver.modes import FELT, SkinModes, modes_of
 from .checks import Check, colour_of, worst_of
 from .corners import contact_corners
-from .demands import CutOff, Demands, SingleFault
+from .demands import CutOff, Demanded, Demands, SingleFault
 from .fault_limits import COLUMN_OF, FELT_COLUMNS
 from .held import INSIDE_K, Span, around_C, stays
 from .plant import ENDING_ROWS_S, LATE_S, OFF_ROWS_S, Future, Plant, Single, Stretch, left_s
@@ -209,7 +209,7 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         repeating: Repeating[DisplayCourse, list[Array]],
         tallies: Sequence[list[Tally]],
         shortest_s: float | None,
-    ) -> tuple[float | None, list[tuple[Demands, tuple[Check, ...]]]]:
+    ) -> Demanded:
         """Demands against set-points that hang, and a loop that runs to an end of its range or stays within it."""
         pause_s = LONGEST_PAUSE_S if shortest_s is None else shortest_s
         beginning = Beginning.of(repeating, pause_s, max(recovered_s))
@@ -234,10 +234,11 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         failed = () if shortest_s is None else stays(around, held, FOR_GOOD)
         demanded_s, first = None if shortest_s is None else pause_s, starts(pause_s)
         rest_s = None if shortest_s is None else beginning.kept_s(first, pause_s)
-        return demanded_s, [
-            (each.demands(cut, demanded_s, rest_s, beginning.unpowered(number, 0.0)), failed)
-            for number, each in enumerate(self._faults(repeating, first))
+        demands = [
+            faults.demands(cut, demanded_s, rest_s, beginning.unpowered(number, 0.0))
+            for number, faults in enumerate(self._faults(repeating, first))
         ]
+        return Demanded(demanded_s, demands, failed)
 
     def _faults(self, repeating: Repeating[DisplayCourse, list[Array]], starts: Starts[list[Array]]) -> list[_Faults]:
         faults = []

@@ -275,8 +275,8 @@ def _gated_together(
     shortest = shortest_pause_s(repeating) if safe else None  # no pause makes a play safe that is red by itself
     if shortest is not None and shortest > pause and repeating.safe(pause):  # the search is exact to 2 % only
         shortest = pause
-    with_faults, demands = plant.demanded(singles, recovered_s, repeating, tallies, shortest)
-    for ways, recovery, own, (demand, failed) in zip(singles, recoveries, tallies, demands, strict=True):
+    demanded = plant.demanded(singles, recovered_s, repeating, tallies, shortest)
+    for ways, recovery, own, demands in zip(singles, recoveries, tallies, demanded.demands, strict=True):
         first, last = ways[0], ways[-1]
         once, again = worst_of(single.checks for single in ways), worst_of(tally.checks() for tally in own)
         plays = plays_in(first.play, pause, limits.session_s)
@@ -286,10 +286,10 @@ def _gated_together(
             plant.rig.uncertainty,
             limits,
             len(plant.corners) * len(ways) * len(plant.endings),
-            (*worst_of([once, again]), *failed),
-            (*once, *failed),
+            (*worst_of([once, again]), *demanded.failed),
+            (*once, *demanded.failed),
             {ending: float(skin_C[0]) for ending, skin_C in last.after_C.items()},
             plant.drift_C,
-            Repeated(pause, recovery, with_faults, plays, limits.session_s, again, shortest),
-            demand,
+            Repeated(pause, recovery, demanded.pause_s, plays, limits.session_s, again, shortest),
+            demands,
         )

@@ -18,7 +18,7 @@ from ..rig.rig import Rig
 from ..rig.rules import Limits
 from .checks import Check, Scenario, worst_of
 from .corners import Corner
-from .demands import Demands
+from .demands import Demanded
 from .spans import ENDING_S, LATER_S
 from .tally import WATCHED, Tally
 
@@ -131,7 +131,7 @@ class Plant(ABC, Generic[Played, States]):
         repeating: Repeating[Played, States],
         tallies: Sequence[list[Tally]],
         shortest_s: float | None,
-    ) -> tuple[float | None, list[tuple[Demands, tuple[Check, ...]]]]:
+    ) -> Demanded:
         """The shortest pause with which single faults can be prevented, what prevents them, and what fails."""
 
     def only(self, corners: list[int]) -> Plant[Played, States]:
