@@ -222,7 +222,7 @@ class AnyLoop:
                     after = skin.after(stages.brief_s, level_C, skin.steady(lasting_C + wrong_K))
                     nodes[SKIN : SKIN + len(after)] = skin.deep_C + skin.lumps @ after
                 nodes_C.append(nodes)
-            states.append(State.settled(self.bank.states(nodes_C)))
+            states.append(State(self.bank.states(nodes_C)))
         return states[0], states[1]
 
     def stuck(

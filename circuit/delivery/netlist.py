@@ -17,8 +17,7 @@ from thermicon.base.numbers.program import own_version
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import AnyRig, Rig
 from ..solver.drive import Drive
-from ..solver.network import HOT, RECORDED, Network, network_of
-from ..solver.steady import state_under_current
+from ..solver.network import RECORDED, Network, network_of
 
 LONGEST_STEP_S = 2.5e-3
 """Longest step for either program: at 10 ms a steep ramp of the current costs them 2 mK."""
@@ -86,7 +85,7 @@ def netlist(
         *_header(rig, names, title),
         *_electrical(rig, points(drive, rest_A)),
         *_module(rig),
-        *_sink(rig, net, float(drive.current_A[0]) if rest_A is None else rest_A),
+        *_sink(rig),
         *skin,
         *_probes(net, names),
         "*",
@@ -153,9 +152,9 @@ def _module(rig: Rig) -> Iterator[str]:
     yield f"Ccold cold 0 {module.cold_plate_J_per_K!r}"
 
 
-def _sink(rig: Rig, net: Network, start_A: float) -> Iterator[str]:
-    """The heat sink: ideal, passive, or a body under its own PI control, whose power at rest balances `start_A`."""
-    sink, controller = rig.heat_sink, rig.heat_sink.controller
+def _sink(rig: Rig) -> Iterator[str]:
+    """The heat sink: ideal or passive."""
+    sink = rig.heat_sink
     yield from _section("heat sink")
     yield f"Rsink sink hot {sink.resistance_K_per_W!r}"
     if (passive := sink.passive) is not None:
@@ -167,19 +166,7 @@ def _sink(rig: Rig, net: Network, start_A: float) -> Iterator[str]:
             yield f"Bstart sink 0 I=V(held)*(V(sink)-{sink.temperature_C!r})*{HOLDING_W_PER_K!r}"
             yield f"Vheld held 0 PWL(0 1 {EDGE_S!r} 0)"
         return
-    if controller is None:
-        yield f"Vsink sink 0 {sink.temperature_C!r}"
-        return
-    rest_W = (sink.temperature_C - float(state_under_current(net, start_A)[HOT])) / sink.resistance_K_per_W
-    yield f"Csink sink 0 {controller.capacity_J_per_K!r}"
-    yield f"Bmiss miss 0 V={sink.temperature_C!r}-V(sink)"
-    integral = f"+{controller.ki_W_per_Ks!r}*V(integral)" if controller.ki_W_per_Ks else ""
-    yield f"Bwanted wanted 0 V={rest_W!r}+{controller.kp_W_per_K!r}*V(miss){integral}"
-    yield f"Bsink 0 sink I=min(max(V(wanted),-{controller.power_limit_W!r}),{controller.power_limit_W!r})"
-    if integral:
-        yield "* the integral waits while the power is at its limit"
-        yield f"Bintegral 0 integral I=V(miss)*(1-u(V(wanted)*V(miss))*u(abs(V(wanted))-{controller.power_limit_W!r}))"
-        yield "Cintegral integral 0 1"
+    yield f"Vsink sink 0 {sink.temperature_C!r}"
 
 
 def _skin(rig: Rig, net: Network) -> tuple[list[str], list[str]]:

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from .faults import CONTROLLED, sentence
+from .faults import sentence
 from .module import Peltier
 from .modules import ModuleOrigin, module_of
-from .parts import Driver, HeatSink, PassiveSink, Probe, SinkController
+from .parts import Driver, HeatSink, PassiveSink, Probe
 from .rigfile import HeatSinkTable, ProbeTable, RigTable, SkinTable
 from .skin import STRATUM_CORNEUM, Layer, Skin, usual_depth_mm
 
@@ -42,11 +42,7 @@ def _heat_sink(table: HeatSinkTable, room_C: float) -> HeatSink:
         start_C = air_C if table.temperature_C is None else table.temperature_C
         return HeatSink(start_C, table.resistance_K_per_W, passive=passive)
     assert table.temperature_C is not None
-    settings = {name: getattr(table, name) for name in CONTROLLED}
-    missing = [name for name, value in settings.items() if value is None]
-    if missing and len(missing) < len(CONTROLLED):
-        raise ValueError(sentence("parts.controlled", key=missing[0], keys=", ".join(CONTROLLED)))
-    return HeatSink(table.temperature_C, table.resistance_K_per_W, None if missing else SinkController(**settings))
+    return HeatSink(table.temperature_C, table.resistance_K_per_W)
 
 
 def skin_of(table: SkinTable) -> Skin:

@@ -12,9 +12,6 @@ from thermicon.base.files.inputs import one_line, paragraph, shipped_table
 PARAMETERS = ("seebeck_V_per_K", "resistance_ohm", "thermal_resistance_K_per_W")
 """The three parameters of a module in a rig file."""
 
-CONTROLLED = ("capacity_J_per_K", "kp_W_per_K", "ki_W_per_Ks", "power_limit_W")
-"""Keys of a heat sink with its own controller, all of which it needs."""
-
 
 Celsius = Annotated[float, Field(ge=-20, le=120)]
 Name = Annotated[str, Field(min_length=1), AfterValidator(one_line)]
@@ -66,7 +63,6 @@ UNITS = {
     "J_per_kgK": "J/(kg·K)",
     "kg_per_m3": "kg/m³",
     "W_per_mK": "W/(m·K)",
-    "W_per_Ks": "W/Ks",
     "A_per_Ks": "A/Ks",
     "As_per_K": "As/K",
     "V_per_K": "V/K",

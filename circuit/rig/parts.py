@@ -7,16 +7,6 @@ from .faults import sentence
 
 
 @dataclass(frozen=True, slots=True)
-class SinkController:
-    """A heat sink with a heat capacity and its own PI control: J/K, W/K, W/(K·s), and its greatest power in W."""
-
-    capacity_J_per_K: float
-    kp_W_per_K: float
-    ki_W_per_Ks: float
-    power_limit_W: float
-
-
-@dataclass(frozen=True, slots=True)
 class PassiveSink:
     """A heat sink in air: capacity J/K, resistance K/W, air °C; `steady` where a run begins in balance with that."""
 
@@ -30,13 +20,12 @@ class PassiveSink:
 class HeatSink:
     """The heat sink under the hot plate: temperature °C, thermal resistance to the hot plate K/W.
 
-    Ideal (of constant temperature) unless it has a heat capacity, and either its own controller or air that cools it.
+    Ideal (of constant temperature) unless it has a heat capacity and air that cools it.
     The temperature is that of the start where it is passive, and that of its air where it also starts in steady state.
     """
 
     temperature_C: float
     resistance_K_per_W: float
-    controller: SinkController | None = None
     passive: PassiveSink | None = None
 
 

@@ -11,7 +11,7 @@ from thermicon.base.files.inputs import LONGEST_NAME, Place, key_faults, read_to
 from thermicon.base.words.near_words import did_you_mean, nearest_words
 
 from . import faults as kinds
-from .faults import CONTROLLED, PARAMETERS, KeyTable, sentence, unit_of
+from .faults import PARAMETERS, KeyTable, sentence, unit_of
 from .module import Datasheet
 from .rules import faults_of
 from .uncertainty import Uncertainty
@@ -69,22 +69,18 @@ class HeatSinkTable(KeyTable):
     capacity_J_per_K: kinds.Ideal | None = None
     air_resistance_K_per_W: Annotated[float, Field(ge=1e-3, le=1e6)] | None = None
     air_C: kinds.Celsius | None = None
-    kp_W_per_K: kinds.Gain | None = None
-    ki_W_per_Ks: kinds.Gain | None = None
-    power_limit_W: Annotated[float, Field(ge=1e-6, le=1e6)] | None = None
 
     def faults(self) -> Iterable[str]:
-        """Neither a temperature nor air, or a controller and air at once."""
+        """Neither a temperature nor air, or air without a heat capacity, or the other way round."""
         passive = self.air_resistance_K_per_W is not None
-        both = [f"heat_sink.{key}" for key in CONTROLLED[1:] if getattr(self, key) is not None]
         if self.temperature_C is None and not passive:
             yield sentence("faults.sink_start")
         if self.air_C is not None and not passive:
             yield sentence("faults.sink_air", air=self.air_C)
-        if passive and both:
-            yield sentence("faults.sink_both", keys=", ".join(both))
-        elif passive and self.capacity_J_per_K is None:
+        if passive and self.capacity_J_per_K is None:
             yield sentence("faults.sink_capacity")
+        if self.capacity_J_per_K is not None and not passive:
+            yield sentence("faults.sink_alone")
 
 
 class DriverTable(KeyTable):

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -18,9 +17,8 @@ import numpy as np
 from thermicon.base.numbers.arrays import Array
 
 from ..rig.rules import Limits
-from ..solver.batch_inputs import Bank, Intervals, State, run_on
+from ..solver.batch_inputs import State
 from ..solver.drive import Drive
-from ..solver.network import unpowered
 from ..solver.steady import state_under_current
 from .checks import Before, Scenario
 from .demanded import demanded
@@ -30,7 +28,6 @@ from .plant import ENDING_ROWS_S, LATE_S, OFF_ROWS_S, Future, Plant, Single, Str
 from .playmap import PlayMap, least_bound
 from .polarity import TEST_S, testing_A
 from .repeated import Repeating
-from .simulated import bound, steady_cycle
 from .single_faults import instants, side_by_side
 from .spans import LATER_S
 from .tally import COLDEST_C, HOTTEST_C, WATCHED, Tally
@@ -58,7 +55,7 @@ class CurrentPlay:
 
 @dataclass(frozen=True, eq=False)
 class CurrentPlant(Plant[CurrentPlay, State]):
-    """An ensemble as a plant: its plays are maps, which are only a guide where heat sinks have controllers."""
+    """An ensemble as a plant: its plays are maps of the nodes."""
 
     ensemble: Ensemble
     _rests: dict[CurrentPlay, State] = field(default_factory=dict)
@@ -103,43 +100,34 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         return self.ensemble.hold(play.rest_A, state, times_s)[0]
 
     def let_go(self, play: CurrentPlay, state: State) -> Iterator[tuple[Future, ...]]:
-        """The last current held, zero current, and power off, which is the same where the sink has no controller."""
+        """The last current held, zero current, and power off, which is the same."""
         last_A = play.drive.current_A[..., -1]
         held, _ = self.ensemble.hold(last_A if last_A.ndim else float(last_A), state, ENDING_ROWS_S)
         yield (Future((ENDING_ROWS_S, held)),)
         zero = Future((ENDING_ROWS_S, self.ensemble.hold(0.0, state, ENDING_ROWS_S)[0]))
-        if not self.ensemble.ideal:
-            yield (zero,)
-            yield (Future((ENDING_ROWS_S, without_power(self.ensemble, state, ENDING_ROWS_S)[0])),)
-            return
         later, _ = self.ensemble.hold(0.0, state, np.append(0.0, LATE_S))
         yield zero, Future((LATE_S, later[:, :, 1:]), drift=True)
         yield (zero,)
 
     def after(self, play: CurrentPlay, pause_s: float, state: State) -> State:
         """States before the next play, for those before this one."""
-        if self.ensemble.ideal:
-            ended = State(self._map(play).after(state.nodes_C), state.sink)
-        else:
-            ended = self.ensemble.end_of(play.drive, state)
+        ended = State(self._map(play).after(state.nodes_C))
         return ended if pause_s <= 0 else self.ensemble.rest(play.rest_A, ended, pause_s)
 
     def map(self, play: CurrentPlay, pause_s: float) -> PlayMap:
-        """A play and its pause as a map of the nodes, on heat sinks without controllers."""
+        """A play and its pause as a map of the nodes."""
         if pause_s <= 0:
             return self._map(play)
         return self._map(play).then(PlayMap(*self.ensemble.modes(play.rest_A).passage(pause_s)))
 
     def _map(self, play: CurrentPlay) -> PlayMap:
         if play not in self._maps:
-            self._maps[play] = PlayMap.of(self.ensemble.uncontrolled(), play.drive, self.rest(play))
+            self._maps[play] = PlayMap.of(self.ensemble, play.drive, self.rest(play))
         return self._maps[play]
 
     def cycle(self, play: CurrentPlay, pause_s: float) -> State:
         """The fixed point of the map; a corner that has none is as hot as can be."""
         start, whole = self.rest(play), self.map(play, pause_s)
-        if not self.ensemble.ideal:
-            return steady_cycle(partial(self.after, play, pause_s), whole, start)
         nodes, settles = whole.fixed_point()
         return _at(start, np.where(settles[:, np.newaxis], np.clip(nodes, COLDEST_C, HOTTEST_C), HOTTEST_C))
 
@@ -147,8 +135,6 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         """Nodes that no play in any order takes the state beyond; as hot as can be where one heats without limit."""
         known = [*map(self.rest, plays), *steady]
         maps = [self.map(play, pause_s) for play in plays]
-        if not self.ensemble.ideal:
-            return bound([partial(self.after, play, pause_s) for play in plays], maps, known, warm)
         free = least_bound(maps, [state.nodes_C[:, :-1] for state in known], 1.0 if warm else -1.0)
         return _at(known[0], np.nan_to_num(free, nan=HOTTEST_C))
 
@@ -224,7 +210,7 @@ class CurrentPlant(Plant[CurrentPlay, State]):
 
 def _at(like: State, free_C: Array) -> State:
     """States with other nodes but for the last, which is deep."""
-    return State(np.concatenate([free_C, like.nodes_C[:, -1:]], axis=1), like.sink)
+    return State(np.concatenate([free_C, like.nodes_C[:, -1:]], axis=1))
 
 
 def single_of_lanes(ensemble: Ensemble, drives: LaneDrives, limits: Limits) -> Single[CurrentPlay, State]:
@@ -239,14 +225,3 @@ def zero_current_C(ensemble: Ensemble) -> Array:
         state = state_under_current(network, 0.0, in_the_end=True)
         steady_C[:, lane] = [network.read(state, name) for name in WATCHED]
     return steady_C
-
-
-def without_power(ensemble: Ensemble, state: State, times_s: Array) -> tuple[Array, State]:
-    """WATCHED at times from now of rigs whose controlled heat sinks have lost their power, and the last states."""
-    networks = [
-        unpowered(network, float(sink)) for network, sink in zip(ensemble.networks, state.sink[:, 0], strict=True)
-    ]
-    none = np.zeros((len(times_s) - 1, len(networks)))
-    intervals = Intervals(times_s, np.arange(len(times_s)), none, none)
-    begun = State.settled(state.nodes_C)
-    return run_on(Bank.of(networks), ensemble.lanes, ensemble.lanes, intervals, begun, WATCHED)

@@ -334,8 +334,6 @@ def zero_current_s(ensemble: Ensemble, limits: Limits, state: State, dose_before
 
     `state` is as warm as a fault or a stop may leave each corner.
     """
-    if not ensemble.ideal:
-        return None
     most = next(rule.limit for rule in limits.rules if rule.quantity == DOSE)
     times = np.concatenate([[0.0], np.geomspace(1.0, limits.session_s, 120)])
     values, _ = ensemble.hold(0.0, state, times)

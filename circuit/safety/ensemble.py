@@ -7,7 +7,7 @@ no farther apart than 10 ms, over which the rate of skin temperature is taken, n
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -18,8 +18,8 @@ from ..rig.rigfile import RigError
 from ..solver.batch_inputs import Bank, Intervals, State, cut, left_over, run_on
 from ..solver.drive import Drive, DriveError
 from ..solver.modes import ConstantCurrent
-from ..solver.network import SINK_J_PER_K, Network, network_of
-from ..solver.steady import check_sink, state_under_current, steady_of
+from ..solver.network import Network, network_of
+from ..solver.steady import state_under_current, steady_of
 from .corners import Corner, corners_of
 from .plant import Stretch
 from .tally import HOTTEST_C, WATCHED
@@ -46,7 +46,6 @@ class Ensemble:
 
     `bridge_A`: a bridge switches between this current and none, so that constant currents are means; None: it does not.
     `averaged`: so are the currents of drives, since the bridge switches too fast for a plate to follow.
-    `ideal`: the heat sink has no controller of its own, so that constant currents are solved by modes.
     """
 
     rig: Rig
@@ -55,7 +54,6 @@ class Ensemble:
     bank: Bank
     gain: Array
     bridge_A: float | None
-    ideal: bool
     averaged: bool = False
     _modes: dict[float, ConstantCurrent] = field(default_factory=dict)
 
@@ -71,8 +69,7 @@ class Ensemble:
         """Some corners of a rig."""
         networks = tuple(network_of(corner.rig) for corner in corners)
         gain = np.array([1.0 + corner.gain_relative for corner in corners])
-        ideal = rig.heat_sink.controller is None
-        return Ensemble(rig, corners, networks, Bank.of(networks), gain, bridge_A, ideal, averaged)
+        return Ensemble(rig, corners, networks, Bank.of(networks), gain, bridge_A, averaged)
 
     def only(self, which: list[int]) -> Ensemble:
         """A copy with some of the corners."""
@@ -80,25 +77,16 @@ class Ensemble:
         few._modes.update({current: modes.only(which) for current, modes in self._modes.items()})
         return few
 
-    def uncontrolled(self) -> Ensemble:
-        """The same on ideal heat sinks where they have controllers."""
-        if self.ideal:
-            return self
-        plates = self.bank.plates.copy()
-        plates[:, SINK_J_PER_K] = 0.0
-        return replace(self, bank=replace(self.bank, plates=plates), ideal=True)
-
     @property
     def lanes(self) -> Index:
         """One lane per corner."""
         return np.arange(len(self.corners), dtype=np.int64)
 
     def at_rest(self, rest_A: float | Array) -> State:
-        """Steady states under a current, or each lane's; hottest where a corner has none, RigError for the rig."""
+        """Steady states under a current, or each lane's; hottest where a corner has none."""
         rests = np.broadcast_to(rest_A, len(self.corners)).tolist()
         states = self.bank.states(list(map(self._steady, self.corners, rests)))
-        check_sink(self.rig, states[0])
-        return State.settled(states)
+        return State(states)
 
     def _steady(self, corner: Corner, rest_A: float) -> Array:
         network, gain = network_of(corner.rig), 1.0 + corner.gain_relative
@@ -153,26 +141,18 @@ class Ensemble:
     ) -> tuple[Array, State]:
         """WATCHED at times from 0 on under a constant current, or one of each corner, and the last states."""
         which = self.lanes if rigs is None else rigs
-        if self.ideal:
-            after = self.modes(current_A).after(which, state.nodes_C, float(times_s[-1]))
-            return self.watch(current_A, state, times_s, which), State(after, state.sink)
-        currents = np.broadcast_to(current_A, len(self.corners))[which]
-        return self.step(np.broadcast_to(currents, (len(times_s) - 1, len(which))), state, times_s, which)
+        after = self.modes(current_A).after(which, state.nodes_C, float(times_s[-1]))
+        return self.watch(current_A, state, times_s, which), State(after)
 
     def watch(
         self, current_A: float | Array, state: State, times_s: Array, rigs: Index, columns: Sequence[str] = WATCHED
     ) -> Array:
         """The first result of `hold`, or some of its columns, where the last states are not needed."""
-        if self.ideal:
-            return self.modes(current_A).run(rigs, state.nodes_C, times_s, columns)
-        return self.hold(current_A, state, times_s, rigs)[0][[WATCHED.index(name) for name in columns]]
+        return self.modes(current_A).run(rigs, state.nodes_C, times_s, columns)
 
     def rest(self, current_A: float | Array, state: State, time_s: float) -> State:
         """States after a constant current has been held for a time in s."""
-        if self.ideal:
-            return State(self.modes(current_A).after(self.lanes, state.nodes_C, time_s), state.sink)
-        times = np.append(np.arange(0.0, time_s - 1e-9, min(1.0, time_s)), time_s)
-        return self.hold(current_A, state, times)[1]
+        return State(self.modes(current_A).after(self.lanes, state.nodes_C, time_s))
 
     def modes(self, current_A: float | Array) -> ConstantCurrent:
         """Modes of all corners under a constant current, or the mean of a bridge's."""

@@ -19,7 +19,6 @@ from .display import DisplayCourse, DisplayPlant
 from .ensemble import Ensemble
 from .plant import Plant, Played, Single, States
 from .repeated import LONGEST_PAUSE_S, Repeated, Repeating, check_pause, plays_in, shortest_pause_s
-from .simulated import check_length
 from .spans import ENDING_S
 
 
@@ -165,7 +164,7 @@ def gate(
     PauseError
         For an impossible pause.
     UnjudgedError
-        Where repeated plays cannot be bounded, or, on a heat sink with its own controller, take too long to simulate.
+        Where repeated plays cannot be bounded.
 
     Examples
     --------
@@ -205,7 +204,6 @@ def gate_set(
     check_pause(pause_s)
     with quiet_blas():
         plant = CurrentPlant.of(Ensemble.of(rig, bridge_A, averaged))
-        check_length(plant.ensemble, [drive for drive, _ in drives])
         rules = rig.limits if limits is None else limits
         return _gated([[CurrentPlay(drive, rest)] for drive, rest in drives], plant, rules, pause_s)
 

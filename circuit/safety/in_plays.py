@@ -29,7 +29,7 @@ class InPlays:
 
 def found_in_plays(faulty: Faulty, hardest: list[int], ends_C: Span) -> InPlays:
     """What prevents faults in plays between bounds: found in the `hardest` corners, again where too slow."""
-    for current_A in faulty.ends_A if faulty.ensemble.ideal else ():
+    for current_A in faulty.ends_A:
         faulty.ensemble.modes(current_A)  # once for all corners and icons
     few = faulty.at(hardest)
     moments = few.moments()

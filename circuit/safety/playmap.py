@@ -7,8 +7,7 @@ warmer than the state before any play in any order: the *warm bound*; the *cold 
 
 A few runs determine a map: one lane per node starts 1 K warmer there, and one starts unchanged. Repetition then costs
 products of small matrices. The least u with u = max(start, Φ₁·u + g₁, Φ₂·u + g₂ …), node by node, comes from Howard's
-iteration: which of them is the largest in each node, solve with those, again until none changes. Heat sinks with a
-controller are simulated beside their maps (`simulated.py`).
+iteration: which of them is the largest in each node, solve with those, again until none changes.
 """
 
 from __future__ import annotations
@@ -65,7 +64,7 @@ class PlayMap:
 
     @staticmethod
     def of(ensemble: Ensemble, drive: Drive | LaneDrives, start: State) -> PlayMap:
-        """The map of a drive in every corner of an ensemble whose heat sinks are ideal.
+        """The map of a drive in every corner of an ensemble.
 
         A long drive is itself played from `start`. Only the differences from there are those of the thinned one: the
         current pumps a few hundredths as much heat of them, so that at most 1e-4 of a difference is wrong.
@@ -77,12 +76,12 @@ class PlayMap:
         begun = (start.nodes_C[:, np.newaxis] + warmer).reshape(-1, nodes)
         rigs = np.repeat(np.arange(corners, dtype=np.int64), free + 1)
         thin = thinned(drive)
-        ended = ensemble.end_of(thin, State.settled(begun), rigs).nodes_C
+        ended = ensemble.end_of(thin, State(begun), rigs).nodes_C
         ended = ended.reshape(corners, free + 1, nodes)[:, :, :free]
         matrix = np.swapaxes(ended[:, 1:] - ended[:, :1], 1, 2)
         from_start = ended[:, 0]
         if thin is not drive:
-            from_start = ensemble.end_of(drive, State.settled(start.nodes_C)).nodes_C[:, :free]
+            from_start = ensemble.end_of(drive, State(start.nodes_C)).nodes_C[:, :free]
         return PlayMap(matrix, np.zeros_like(from_start)).through(start.nodes_C[:, :free], from_start)
 
     def through(self, before_C: Array, after_C: Array) -> PlayMap:

@@ -138,9 +138,9 @@ class Faulty:
         """
         which = np.flatnonzero(cut_s)
         rigs, state, cut_s = moments.rigs[which], moments.state.take(which), cut_s[which]
-        if moments.stuck_A is not None and self.ensemble.ideal:  # the driver's limit leads one way until it is cut
+        if moments.stuck_A is not None:  # the driver's limit leads one way until it is cut
             nodes = self.ensemble.modes(moments.stuck_A).after(rigs, state.nodes_C, cut_s)
-            rows_s, values = AFTER_ROWS_S, self.ensemble.watch(0.0, State(nodes, state.sink), AFTER_ROWS_S, rigs)
+            rows_s, values = AFTER_ROWS_S, self.ensemble.watch(0.0, State(nodes), AFTER_ROWS_S, rigs)
         else:
             rows_s = np.unique(np.concatenate([HANG_ROWS_S[cut_s.max() > HANG_ROWS_S], cut_s]))
             on = rows_s[:-1, np.newaxis] < cut_s - 1e-9
@@ -257,7 +257,7 @@ def stuck_at(drive: Drive) -> list[tuple[float, float]]:
 
 def side_by_side(states: Sequence[State]) -> State:
     """States of lanes next to each other."""
-    return State(*(np.concatenate([getattr(one, part) for one in states]) for part in ("nodes_C", "sink")))
+    return State(np.concatenate([state.nodes_C for state in states]))
 
 
 def _cut_s(display: Array, low: float, high: float, late_s: float) -> Array:

@@ -113,28 +113,18 @@ def run_forward(
     extra: tuple[Index, Array] | None = None,
 ) -> Array:  # fmt: skip
     """Probes (probes, lanes, rows) of lanes from `state` (lanes, nodes), then `extra`: starts (k,), weights (k, 3)."""
-    return run_on(bank, rig_of, cue_of, intervals, State.settled(state), probes, extra)[0]
+    return run_on(bank, rig_of, cue_of, intervals, State(state), probes, extra)[0]
 
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """The state of lanes: `nodes_C` (lanes, nodes) as in `Network`, and `sink` (lanes, 4) of heat sinks with a loop.
-
-    A sink is its temperature in °C, the integral of its loop in K·s, and its power now and at rest in W; NaN where it
-    has not begun.
-    """
+    """The state of lanes: `nodes_C` (lanes, nodes) as in `Network`."""
 
     nodes_C: Array
-    sink: Array
-
-    @staticmethod
-    def settled(nodes_C: Array) -> State:
-        """States whose heat sinks rest at their set-points."""
-        return State(nodes_C, np.full((len(nodes_C), 4), np.nan))
 
     def take(self, lanes: Index) -> State:
         """The states of some lanes, in that order."""
-        return State(self.nodes_C[lanes], self.sink[lanes])
+        return State(self.nodes_C[lanes])
 
 
 def run_on(
@@ -152,16 +142,16 @@ def run_on(
         places = np.concatenate([places, np.repeat(extra[0][np.newaxis], rigs, axis=0)], axis=1)
         weights = np.concatenate([weights, np.repeat(extra[1][np.newaxis], rigs, axis=0)], axis=1)
     out = np.empty((places.shape[1], len(rig_of), int(intervals.row_of.max()) + 1))
-    sinks, final = state.sink.copy(), np.zeros_like(state.nodes_C)
+    final = np.zeros_like(state.nodes_C)
 
     def work(wide: tuple[int, ...], blocks: Index) -> None:
         forward(
             wide, blocks, rig_of, cue_of, intervals.edges_s, intervals.start_A, intervals.end_A, intervals.row_of,
-            bank.arrays, places, weights, state.nodes_C, sinks, out, final,
+            bank.arrays, places, weights, state.nodes_C, out, final,
         )  # fmt: skip
 
     _in_blocks(work, len(rig_of), len(intervals.edges_s), alone)
-    return out, State(final, sinks)
+    return out, State(final)
 
 
 def run_follow(

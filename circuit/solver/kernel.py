@@ -64,7 +64,7 @@ def room(wide, bank):
     lanes, h = len(wide), (bank[2].shape[1] + 1) // 2
     return (
         np.zeros((LUMPS + h, 2 * lanes)), np.empty((bank[1].shape[1], lanes)), np.empty((3, 2 * h + 1, lanes)),
-        np.zeros((net.SINK_NUMBERS, lanes)), np.empty((h + 2, 2 * lanes)), np.empty(2 * lanes), np.empty(lanes),
+        np.empty(lanes), np.empty((h + 2, 2 * lanes)), np.empty(2 * lanes), np.empty(lanes),
     )  # fmt: skip
 
 
@@ -73,8 +73,8 @@ def begin(wide, block, rig_of, bank, state, x, p, skin, sink):
     """Load a block's rigs and states (lane, nodes) in °C; returns h, half the largest number of lumps.
 
     Shorter columns are padded at the deep end. The conductance to the deep node is added to the last lump's perfusion
-    (blood and deep node have one temperature), so that g = 0 cuts the padding off. Heat sinks with a controller start
-    at their set-points, with the power that holds them there; passive ones are part of the state.
+    (blood and deep node have one temperature), so that g = 0 cuts the padding off. `sink` (lane,) gets the temperatures
+    of the heat sinks, of which passive ones are part of the state.
     """
     lanes, h = len(wide), 0
     count, plates, capacity, conductance, perfusion = bank
@@ -96,14 +96,8 @@ def begin(wide, block, rig_of, bank, state, x, p, skin, sink):
         for i in range(n):
             cap[i, lane], g[i, lane], perf[i, lane] = capacity[r, i], conductance[r, i], perfusion[r, i]
         perf[n - 1, lane] += conductance[r, n]
-        for k in range(net.SINK_NUMBERS):  # a slice as target would compile the text of its errors as well
-            sink[k, lane] = 0.0
-        sink[net.TEMPERATURE, lane] = p[net.SINK_C, lane]
-        if p[net.SINK_AIR_W_PER_K, lane] > 0.0:
-            sink[net.TEMPERATURE, lane] = state[block[lane], n + 2]
-        elif p[net.SINK_J_PER_K, lane] > 0.0:
-            power = -p[net.SINK_W_PER_K, lane] * (state[block[lane], 0] - p[net.SINK_C, lane])
-            sink[net.POWER, lane] = sink[net.REST_POWER, lane] = power
+        passive = p[net.SINK_AIR_W_PER_K, lane] > 0.0
+        sink[lane] = state[block[lane], n + 2] if passive else p[net.SINK_C, lane]
     return h
 
 
@@ -164,20 +158,6 @@ def weighed(wide, h, weight, x, first):
             first[lane] += weight[j, lane] * x[LUMPS + j, lane] + weight[j, lanes + lane] * x[LUMPS + j, lanes + lane]
 
 
-@compiled
-def regulate_sink(step, p, sink):
-    """Power of the heat sink's own controller for the next step: P = P_rest + kp·e + ki·∫e dt within its limits.
-
-    The sink then obeys C_s·dT_s/dt = P + (T_h − T_s)/R_s, which `advance` steps together with the plates.
-    The integral is not advanced while the power is at a limit and the error would push it further (anti-windup).
-    """
-    error = p[net.SINK_C] - sink[net.TEMPERATURE]
-    power = sink[net.REST_POWER] + p[net.SINK_KP] * error + p[net.SINK_KI] * sink[net.INTEGRAL]
-    sink[net.POWER] = min(max(power, -p[net.SINK_POWER_W]), p[net.SINK_POWER_W])
-    if power == sink[net.POWER] or power * error < 0.0:
-        sink[net.INTEGRAL] += error * step
-
-
 @inlined
 def advance(wide, h, step, current, squared, p, g0, x, y, total, first, sink, rows, whole):
     """One trapezoidal step in place, with the step's mean current and mean squared current; factors are for step/2.
@@ -186,14 +166,12 @@ def advance(wide, h, step, current, squared, p, g0, x, y, total, first, sink, ro
 
         C_h·dT_h/dt = αI·T_h + I²R/2 + (T_c − T_h)/Θ + (T_s − T_h)/R_s,
         C_c·dT_c/dt = −αI·T_c + I²R/2 + (T_h − T_c)/Θ + g_0·(T_1 − T_c),
+        C_s·dT_s/dt = (T_air − T_s)/R_air + (T_h − T_s)/R_s where the heat sink is passive,
 
     T_h and T_c in kelvin in the Peltier terms; the implicit half step makes them a symmetric 2 × 2 system.
     """
     lanes = len(wide)
     keep, link, back, weight = rows[KEEP], rows[LINK], rows[BACK], rows[WEIGHT]
-    for lane in range(lanes):
-        if whole[SINK_SHARE, lane] > 0.0:
-            regulate_sink(step, p[:, lane], sink[:, lane])
     for lane in range(lanes):
         hot0, cold0, kelvin, leak = (
             x[PLATES, lane], x[PLATES, lanes + lane], ZERO_C_IN_K + p[net.DEEP_C, lane], p[net.CONDUCTANCE, lane],
@@ -203,14 +181,15 @@ def advance(wide, h, step, current, squared, p, g0, x, y, total, first, sink, ro
         hot_store, cold_store, out = (
             whole[HOT_STORE, lane], whole[COLD_STORE, lane], p[net.SINK_W_PER_K, lane] * (1.0 - share),
         )  # fmt: skip
-        sink_K = sink[net.TEMPERATURE, lane] - p[net.DEEP_C, lane]
+        sink_K = sink[lane] - p[net.DEEP_C, lane]
+        from_air = p[net.SINK_AIR_W_PER_K, lane] * (p[net.SINK_C, lane] - sink[lane])
         a11, a22 = hot_store + out + leak - pump, cold_store + leak + pump + g0[lane] * (1.0 - whole[COLD_SHARE, lane])
-        b1 = hot_store * hot0 + out * sink_K + share * sink[net.POWER, lane] + pump * kelvin + joule
+        b1 = hot_store * hot0 + out * sink_K + share * from_air + pump * kelvin + joule
         b2 = cold_store * cold0 - pump * kelvin + joule + g0[lane] * first[lane]
         inverse = 1.0 / (a11 * a22 - leak * leak)  # both off-diagonal elements are −1/Θ
         hot, cold = (b1 * a22 + leak * b2) * inverse, (a11 * b2 + leak * b1) * inverse
         x[PLATES, lane], x[PLATES, lanes + lane] = 2.0 * hot - hot0, 2.0 * cold - cold0
-        sink[net.TEMPERATURE, lane] += 2.0 * share * (sink[net.POWER, lane] / p[net.SINK_W_PER_K, lane] + hot - sink_K)
+        sink[lane] += 2.0 * share * (from_air / p[net.SINK_W_PER_K, lane] + hot - sink_K)
         y[0, lane], y[0, lanes + lane] = cold, 0.0
     for j in range(h):  # elimination of both halves, towards their meeting
         for c in range(2 * lanes):
@@ -232,14 +211,13 @@ def advance(wide, h, step, current, squared, p, g0, x, y, total, first, sink, ro
 
 @compiled
 def forward(
-    wide, blocks, rig_of, cue_of, edges, start_A, end_A, row_of, bank, places, weights, state, sinks, out, final,
+    wide, blocks, rig_of, cue_of, edges, start_A, end_A, row_of, bank, places, weights, state, out, final,
 ):  # fmt: skip
     """Step every lane in `blocks` (blocks, lanes) through the intervals between `edges`, and write the probes of rows.
 
     Lanes of a block share their steps. `bank` holds rigs as `Bank.arrays` gives them; `start_A`, `end_A` (interval,
     cue) are the currents at both ends of an interval; `row_of` (interval + 1,) the row to write at an edge, or −1;
-    `state` (lane, nodes) the start in °C; `out` (probe, lane, row) and `final` (lane, nodes) are filled. `sinks`
-    (lane, 4) holds each lane's heat sink that has a controller (NaN: start at its set-point), and is left as it ends.
+    `state` (lane, nodes) the start in °C; `out` (probe, lane, row) and `final` (lane, nodes) are filled.
     """
     lanes, probes = len(wide), places.shape[1]
     x, p, skin, sink, y, total, first = room(wide, bank)
@@ -251,9 +229,6 @@ def forward(
         h = begin(wide, block, rig_of, bank, state, x, p, skin, sink)
         for lane in range(lanes):
             r = rig_of[block[lane]]
-            if p[net.SINK_AIR_W_PER_K, lane] == 0.0 and not math.isnan(sinks[block[lane], net.TEMPERATURE]):
-                for k in range(net.SINK_NUMBERS):
-                    sink[k, lane] = sinks[block[lane], k]
             for q in range(probes):
                 weight[q, 3, lane] = 0.0
                 for j in range(3):
@@ -296,10 +271,8 @@ def forward(
                 since += step
         for lane in range(lanes):
             n, deep, last = bank[0][rig_of[block[lane]]], p[net.DEEP_C, lane], final[block[lane]]
-            for k in range(net.SINK_NUMBERS):
-                sinks[block[lane], k] = sink[k, lane]
             for k in range(n + 2):
                 last[k] = flat[place_of(k, n, h, lane, lanes)] + deep
             last[n + 2] = deep
             if p[net.SINK_AIR_W_PER_K, lane] > 0.0:
-                last[n + 2], last[n + 3] = sink[net.TEMPERATURE, lane], deep
+                last[n + 2], last[n + 3] = sink[lane], deep

@@ -97,7 +97,7 @@ def follow(
                 share, elim, deep = face_share[rig_of[block[lane]]], period_whole[COLD_SHARE, lane], p[net.DEEP_C, lane]
                 amperes, code = wanted(
                     target[cue_of[block[lane]], k], share, z0[lane] + deep * (1.0 - elim), elim, skin[1, 0, lane],
-                    period, x[PLATES, lane] + deep, x[PLATES, lanes + lane] + deep, sink[net.TEMPERATURE, lane],
+                    period, x[PLATES, lane] + deep, x[PLATES, lanes + lane] + deep, sink[lane],
                     current[lane], p[:, lane],
                 )  # fmt: skip
                 current[lane], squared[lane] = amperes, amperes * amperes

@@ -62,7 +62,7 @@ def regulate(
                 demanded[lane] = bias[block[lane]] + gains[r, KP] * error[lane] + gains[r, KI] * integral[lane]
                 demanded[lane] += gains[r, KD] * rate
                 amperes, why[block[lane], k] = limited(
-                    demanded[lane], x[PLATES, lane] + deep, x[PLATES, lanes + lane] + deep, sink[net.TEMPERATURE, lane],
+                    demanded[lane], x[PLATES, lane] + deep, x[PLATES, lanes + lane] + deep, sink[lane],
                     p[:, lane],
                 )  # fmt: skip
                 current[lane], squared[lane], before[lane] = amperes, amperes * amperes, seen

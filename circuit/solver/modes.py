@@ -1,8 +1,8 @@
 """Exact solutions of the circuit by its modes.
 
 With a constant current the circuit is linear: C·dx/dt = −K·x + b. K is symmetric, since the Peltier heat of a plate
-depends on that plate alone, so C^(−1/2)·K·C^(−1/2) has real modes. A heat sink must be ideal or passive: one with a
-controller of its own saturates, and is stepped by the kernel instead. A negative rate is a rig that heats without end.
+depends on that plate alone, so C^(−1/2)·K·C^(−1/2) has real modes. A negative rate is a rig that heats without
+end.
 Skin under a display whose temperature is given, as by a thermode, has no module: C·dx/dt = −G·x + g₀·u·e₀, with
 temperatures above the deep node's and u that of the display.
 """

@@ -5,7 +5,7 @@ that has one, deep node (constant), all in °C.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -22,22 +22,14 @@ temperature and 1/R_s, and of the temperature of deep tissue and blood."""
 LOWEST_A, HIGHEST_A, COMPLIANCE_V = range(8, 11)
 """Places of the driver's limits."""
 
-SINK_J_PER_K, SINK_KP, SINK_KI, SINK_POWER_W = range(11, 15)
-"""Places of a heat sink's own controller: heat capacity (0: the sink is ideal), W/K, W/(K·s), greatest power."""
+SINK_J_PER_K, SINK_AIR_W_PER_K, SINK_START_C = range(11, 14)
+"""Places of a passive heat sink's capacity, of its conductance to air (0: it is ideal; else SINK_C is that of the air),
+and of its temperature at the start (NaN: where the current and the air leave it)."""
 
-SINK_AIR_W_PER_K, SINK_START_C = range(15, 17)
-"""Places of a passive heat sink's conductance to air (0: it is not passive; SINK_C is then the air's temperature), and
-of its temperature at the start (NaN: where the current and the air leave it)."""
-
-PAST_MOST_COOLING = 17
+PAST_MOST_COOLING = 14
 """Place of 1 for a loop that does not know at which current its module cools most, and runs to the driver's limit."""
 
-PLATE_NUMBERS = 18
-
-TEMPERATURE, INTEGRAL, POWER, REST_POWER = range(4)
-"""Places in the state of a heat sink with a controller: °C, integral of its error K·s, power W now and at rest."""
-
-SINK_NUMBERS = 4
+PLATE_NUMBERS = 15
 
 
 RECORDED = (
@@ -126,29 +118,18 @@ def skin_network_of(rig: Rig) -> Network:
 
 def network_on(rig: Rig, column: SkinColumn, deep_C: float) -> Network:
     """Return the lumps of a rig on another column of its skin, over a deep (and blood) temperature in °C."""
-    module, driver, controller = rig.module, rig.driver, rig.heat_sink.controller
+    module, driver = rig.module, rig.driver
     plates = np.zeros(PLATE_NUMBERS)
     plates[[ALPHA, RESISTANCE]] = module.seebeck_V_per_K, module.resistance_ohm
     plates[[CONDUCTANCE, SINK_W_PER_K]] = 1 / module.thermal_resistance_K_per_W, 1 / rig.heat_sink.resistance_K_per_W
     plates[[HOT_J_PER_K, COLD_J_PER_K]] = module.hot_plate_J_per_K, module.cold_plate_J_per_K
     plates[[SINK_C, DEEP_C]] = rig.heat_sink.temperature_C, deep_C
     plates[[LOWEST_A, HIGHEST_A, COMPLIANCE_V]] = driver.current_min_A, driver.current_max_A, driver.voltage_limit_V
-    if controller is not None:
-        plates[[SINK_J_PER_K, SINK_POWER_W]] = controller.capacity_J_per_K, controller.power_limit_W
-        plates[[SINK_KP, SINK_KI]] = controller.kp_W_per_K, controller.ki_W_per_Ks
-    if (passive := rig.heat_sink.passive) is not None:  # to the kernel, a controller whose gain is that of the air
-        conductance = 1 / passive.air_resistance_K_per_W
-        plates[[SINK_J_PER_K, SINK_C, SINK_KP]] = passive.capacity_J_per_K, passive.air_C, conductance
-        plates[[SINK_AIR_W_PER_K, SINK_POWER_W]] = conductance, np.inf
+    if (passive := rig.heat_sink.passive) is not None:
+        plates[[SINK_J_PER_K, SINK_C]] = passive.capacity_J_per_K, passive.air_C
+        plates[SINK_AIR_W_PER_K] = 1 / passive.air_resistance_K_per_W
         plates[SINK_START_C] = np.nan if passive.steady else rig.heat_sink.temperature_C
     return _network(rig, column, plates)
-
-
-def unpowered(network: Network, sink_C: float) -> Network:
-    """Return a network whose controlled heat sink is at a temperature in °C and has lost its power."""
-    plates = network.plates.copy()
-    plates[SINK_C], plates[SINK_POWER_W] = sink_C, 0.0
-    return replace(network, plates=plates)
 
 
 def _network(rig: Rig, column: SkinColumn, plates: Array) -> Network:

@@ -78,19 +78,6 @@ def holding_current_A(network: Network, control: str, level_C: float) -> float:
     return current_for_heat_A(heat, cold, base, total, alpha, ohm, leak, greatest, 0.0, 1e-13)
 
 
-def check_sink(rig: Rig, state_C: Array) -> None:
-    """Raise RigError where a heat sink with its own controller lacks the power to hold a state (nodes,) in °C."""
-    sink, controller = rig.heat_sink, rig.heat_sink.controller
-    if controller is None:
-        return
-    power = (float(state_C[net.HOT]) - sink.temperature_C) / sink.resistance_K_per_W
-    if abs(power) > controller.power_limit_W:
-        raise RigError(
-            f"rig {rig.name}: at rest the hot plate has {abs(power):.2f} W to {'remove' if power > 0 else 'add'}, its "
-            f"controller gives {controller.power_limit_W:g} W; raise heat_sink.power_limit_W, or begin nearer to rest"
-        )
-
-
 def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
     """The current in A, and the temperatures (nodes,) in °C, read-only, that hold a baseline of `skin` or `display`.
 
@@ -122,7 +109,6 @@ def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
             f"{what}: it needs {voltage:.2f} V, the driver gives at most {driver.voltage_limit_V:g} V; "
             f"choose a baseline nearer to rest or a higher driver.voltage_limit_V"
         )
-    check_sink(rig, state)
     return float(current), state
 
 

@@ -37,7 +37,7 @@ def is_linear(rigs: Sequence[Rig], nominal: Rig, probes: Sequence[str], rows_s: 
         and nominal.controller is None
         and update_Hz * LONGEST_PERIOD_S >= 1.0 - 1e-9
         and float(np.abs(rows_s * update_Hz - np.rint(rows_s * update_Hz)).max()) < 1e-6
-        and all(rig.heat_sink.passive is None and rig.heat_sink.controller is None for rig in (*rigs, nominal))
+        and all(rig.heat_sink.passive is None for rig in (*rigs, nominal))
     )
 
 

@@ -1,4 +1,4 @@
-"""PID loops on a display thermistor or a hot plate, beside the same loops in ngspice."""
+"""PID loops on a display thermistor, beside the same loops in ngspice."""
 
 import re
 import subprocess
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.circuit.delivery.one_drive import icon_of
-from thermicon.circuit import Drive, Rig, Trace, netlist, simulate, simulate_current, simulate_many
+from thermicon.circuit import Drive, Rig, Trace, netlist, simulate, simulate_many
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.batch_inputs import bank_of, run_regulate
 from thermicon.circuit.solver.steady import steady_state
@@ -17,11 +17,6 @@ from thermicon.icons import Icon
 
 GAINS = {"lag_s": 0.1, "kp_A_per_K": 2.0, "ki_A_per_Ks": 1.0, "kd_As_per_K": 0.15}
 LOOP = Rig.load("thenar").with_set([f"controller.{key}={value}" for key, value in GAINS.items()])
-SINK = ["capacity_J_per_K=60", "kp_W_per_K=4", "ki_W_per_Ks=0.5", "power_limit_W=12"]
-HEAVY = Rig.load("thenar").with_set([f"heat_sink.{setting}" for setting in SINK])
-
-
-PULSE = Drive([0, 1, 1.1, 8, 8.1, 20], [0.1, 0.1, 1.2, 1.2, 0.1, 0.1])
 
 
 @pytest.mark.parametrize("verb", ["cool", "warm"])
@@ -60,37 +55,9 @@ def test_a_loop_starts_at_rest_and_stays_there() -> None:
     assert np.ptp(simulate(icon_of("rest for 4 s"), LOOP).display_C) < 1e-9
 
 
-def test_what_a_controller_of_display_or_heat_sink_needs() -> None:
+def test_a_gain_below_zero_is_refused() -> None:
     with pytest.raises(RigError, match=r"controller\.kp_A_per_K = -1 A/K: must be at least 0 A/K"):
         Rig.load("thenar").with_(**{"controller.kp_A_per_K": -1})
-    with pytest.raises(RigError, match=r"heat_sink\.kp_W_per_K is missing; a hot plate under its own control needs"):
-        Rig.load("thenar").with_(**{"heat_sink.capacity_J_per_K": 60})
-
-
-def test_a_hot_plate_under_its_own_control_moves_and_comes_back() -> None:
-    drive = Drive([0, 1, 1.1, 8, 8.1, 60], [0.1, 0.1, 1.2, 1.2, 0.1, 0.1])
-    heavy, ideal = simulate_current(drive, HEAVY), simulate_current(drive, Rig.load("thenar"))
-    moved = heavy.hot_plate_C - ideal.hot_plate_C
-    assert moved[0] == pytest.approx(0.0, abs=1e-9)
-    assert 0.5 < moved.max() < 3.0
-    assert abs(moved[-1]) < 0.2
-
-
-def test_its_power_limit_binds() -> None:
-    drive = Drive([0, 1, 1.1, 20], [0.1, 0.1, 1.2, 1.2])
-    weak = simulate_current(drive, HEAVY.with_(**{"heat_sink.power_limit_W": 3.0}))
-    assert weak.hot_plate_C[-1] > simulate_current(drive, HEAVY).hot_plate_C[-1] + 1.5
-
-
-@pytest.mark.parametrize(("strong_A", "share"), [(0.5, 0.3), (-0.8, 0.8)])
-def test_the_integral_of_a_sink_does_not_wind_up_in_a_minute_at_its_power_limit(strong_A: float, share: float) -> None:
-    """Wound up, it takes the plate beyond its rest by 0.6 and by 1.1 of how far that was away."""
-    slow = HEAVY.with_(**{"heat_sink.power_limit_W": 3.0, "heat_sink.ki_W_per_Ks": 0.1})
-    hot = simulate_current(Drive([0, 1, 61, 200], [0.1, strong_A, 0.1, 0.1], held=True), slow).hot_plate_C
-    away = np.sign(strong_A) * (hot - hot[0])
-    assert away.max() > 2.5, "the limit is hit"
-    assert away.min() > -share * away.max()
-    assert abs(away[-1]) < 0.05
 
 
 @pytest.mark.parametrize(("periods", "late"), [(0.0, 0), (0.5, 1), (1.0, 1), (1.5, 2)])
@@ -131,13 +98,6 @@ def ngspice_columns(text: str, ngspice: str, folder: Path) -> dict[str, np.ndarr
 def apart(trace: Trace, columns: dict[str, np.ndarray], probe: str) -> float:
     time_s, values = columns["time"], columns[f"v({probe.lower()})"]
     return float(np.abs(np.interp(trace.time_s, time_s, values) - getattr(trace, probe)).max())
-
-
-def test_a_hot_plate_under_its_own_control_agrees_with_ngspice(tool: Tool, tmp_path: Path) -> None:
-    trace = simulate_current(PULSE, HEAVY)
-    columns = ngspice_columns(netlist(HEAVY, PULSE, out_file="out.txt"), tool("ngspice"), tmp_path)
-    for probe in ("hot_plate_C", "display_C", "skin_C"):
-        assert apart(trace, columns, probe) < 2e-3, probe
 
 
 def sampled_loop(rig: Rig, cue: Icon, end_s: float) -> str:
@@ -203,16 +163,3 @@ def test_a_batch_runs_the_loop_too() -> None:
         simulate_many(skin, [LOOP], nominal=LOOP, end_s=9.0, tracking="ideal")
     with pytest.raises(RigError, match="must all have a controller, or none"):
         simulate_many(cues, [Rig.load("thenar")], nominal=LOOP, end_s=9.0)
-
-
-def test_a_hot_plate_without_the_power_to_rest_is_refused() -> None:
-    weak = HEAVY.with_(**{"heat_sink.power_limit_W": 0.5})
-    with pytest.raises(RigError, match=r"at rest the hot plate has 10\.\d+ W to remove, its controller gives 0\.5 W"):
-        simulate_current(Drive([0, 5], [1.0, 1.0]), weak)
-    with pytest.raises(RigError, match=r"raise heat_sink\.power_limit_W, or begin nearer to rest"):
-        steady_state(HEAVY.with_(**{"heat_sink.power_limit_W": 0.1}), "display", 32.0)
-    cold = Rig.load("shani2021").with_set([f"heat_sink.{setting}" for setting in (*SINK[:3], "power_limit_W=0.2")])
-    with pytest.raises(
-        RigError, match=r"at rest the hot plate has 0\.\d+ W to add, its controller gives 0\.2 W; raise"
-    ):
-        steady_state(cold.with_(**{"heat_sink.temperature_C": 28.0}), "display", 42.0)

@@ -7,7 +7,6 @@ import numpy as np
 from thermicon.base.numbers.arrays import Array
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.safety.corners import Corner
-from thermicon.circuit.safety.current import without_power
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.plant import ENDING_ROWS_S
 from thermicon.circuit.safety.spans import ENDING_S
@@ -46,7 +45,7 @@ def play_out(drive: Drive, rig: Rig, *, rest_A: float | None = None, bridge_A: f
     after = np.append(ENDING_ROWS_S[ENDING_S - 1e-9 > ENDING_ROWS_S], ENDING_S)
     cue, end = np.concatenate(parts, axis=2), float(drive.time_s[-1])
     endings = [ensemble.hold(float(drive.current_A[-1]), state, after)[0], ensemble.hold(0.0, state, after)[0]]
-    endings.append(endings[1] if ensemble.ideal else without_power(ensemble, state, after)[0])
+    endings.append(endings[1])  # without power
     values = np.stack([np.concatenate([cue, ending[:, :, 1:]], axis=2) for ending in endings], axis=1)
     values.setflags(write=False)
     return Futures(end, ensemble.corners, np.concatenate([*times, end + after[1:]]), values)

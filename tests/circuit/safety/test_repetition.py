@@ -98,8 +98,8 @@ def test_bounds_enclose_thirty_plays_in_any_order(pause_s: float, near_K: float)
             nearest = min(nearest, float((warm - state.nodes_C)[:, 1].min()))
     assert nearest < near_K, "bounds are of use: the display comes near them"
     for play in PLAYS:  # what no order can pass, since no play leads out
-        assert (simulated(plant, play, pause_s, State(warm, start.sink)).nodes_C <= warm + 1e-5).all()
-        assert (simulated(plant, play, pause_s, State(cold, start.sink)).nodes_C >= cold - 1e-5).all()
+        assert (simulated(plant, play, pause_s, State(warm)).nodes_C <= warm + 1e-5).all()
+        assert (simulated(plant, play, pause_s, State(cold)).nodes_C >= cold - 1e-5).all()
 
 
 def test_bounds_of_a_set_hold_where_one_drive_warms_the_sink_and_another_the_display() -> None:

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from tests.circuit.safety.futures import play_out
 from tests.circuit.solver.watching import watch
@@ -44,7 +43,6 @@ def test_rows_are_in_step_with_the_updates(update_s: float, row_s: float) -> Non
     assert row_of(Drive(times, np.zeros(20), held=True)) == pytest.approx(row_s)
 
 
-OWN = {"capacity_J_per_K": 60.0, "kp_W_per_K": 8.0, "ki_W_per_Ks": 1.0, "power_limit_W": 9.0}
 CUE = Drive([0, 1, 1.5, 4, 5], [0.1, 0.5, 1.2, -0.4, 0.2], held=True)
 WITHIN_K = 1e-3
 """A block of lanes may take shorter steps than one lane alone."""
@@ -85,72 +83,6 @@ def test_every_lane_is_the_run_of_its_rig(held: bool) -> None:
             for w, name in enumerate(WATCHED):
                 theirs = np.interp(found.time_s, alone.time_s, getattr(alone, name))
                 assert np.abs(found.values[w, e, c] - theirs).max() < 3e-3, (name, str(corner), ENDINGS[e])
-
-
-def test_power_off_is_zero_current_on_an_ideal_sink_and_not_on_its_own() -> None:
-    ideal = play_out(CUE, sure_rig())
-    assert (ideal.values[:, 2] == ideal.values[:, 1]).all()
-    own = play_out(CUE, THENAR.with_(**{f"heat_sink.{key}": value for key, value in OWN.items()}, **CERTAIN))
-    apart = own.values[WATCHED.index("hot_plate_C"), 2] - own.values[WATCHED.index("hot_plate_C"), 1]
-    assert np.abs(apart[:, -1]).min() > 0.3
-    assert (apart[:, own.time_s <= own.end_s] == 0).all()
-
-
-def sink_at_end_C(rig: Rig, time_s: np.ndarray, hot_C: np.ndarray) -> float:
-    """Return the temperature in °C of a heat sink at the end of a run with this hot plate (rows,) in °C.
-
-    The steps of its controller are those of the kernel, one for each row.
-    """
-    sink, own = rig.heat_sink, rig.heat_sink.controller
-    if own is None:
-        return sink.temperature_C
-    now, integral, out = sink.temperature_C, 0.0, 1.0 / sink.resistance_K_per_W
-    rest = -out * (float(hot_C[0]) - now)
-    for step, begin, end in zip(np.diff(time_s).tolist(), hot_C[:-1].tolist(), hot_C[1:].tolist(), strict=True):
-        miss = sink.temperature_C - now
-        asked = rest + own.kp_W_per_K * miss + own.ki_W_per_Ks * integral
-        power = min(max(asked, -own.power_limit_W), own.power_limit_W)
-        if asked == power or asked * miss < 0.0:
-            integral += miss * step
-        share = out / (own.capacity_J_per_K / (0.5 * step) + out)
-        now += 2.0 * share * (power / out + 0.5 * (begin + end) - now)
-    return now
-
-
-def test_power_off_by_an_independent_solver() -> None:
-    rig = Rig.load("shani2021").with_(**{f"heat_sink.{key}": value for key, value in OWN.items()}, **CERTAIN)
-    found = play_out(CUE, rig)
-    at = int(np.searchsorted(found.time_s, found.end_s - 1e-9))
-    net, module = network_of(rig), rig.module
-    trace = simulate_current(CUE, rig)
-    sink = sink_at_end_C(rig, trace.time_s, trace.hot_plate_C)
-    # the hot plate's own balance gives the sink's temperature a second time
-    tail = slice(-4, -1)
-    slope = np.polynomial.Polynomial.fit(trace.time_s[tail], trace.hot_plate_C[tail], 2).deriv()(trace.time_s[-2])
-    hot, cold, amps = trace.hot_plate_C[-2], trace.display_C[-2], trace.current_A[-2]
-    into = module.seebeck_V_per_K * (hot + 273.15) * amps + module.resistance_ohm / 2 * amps**2
-    into -= (hot - cold) / module.thermal_resistance_K_per_W + module.hot_plate_J_per_K * slope
-    assert sink == pytest.approx(hot - rig.heat_sink.resistance_K_per_W * into, abs=0.03)
-
-    capacity = np.array([OWN["capacity_J_per_K"], module.hot_plate_J_per_K, module.cold_plate_J_per_K])
-    capacity = np.concatenate([capacity, net.capacity_J_per_K])
-    link = np.concatenate([[1 / rig.heat_sink.resistance_K_per_W, 1 / module.thermal_resistance_K_per_W],
-                           net.conductance_W_per_K])  # fmt: skip
-
-    def slopes(_: float, state: np.ndarray) -> np.ndarray:
-        flow = link * (np.append(state, net.deep_C)[:-1] - np.append(state, net.deep_C)[1:])
-        heat = np.concatenate([[0.0], flow[:-1]]) - flow
-        heat[3:] -= net.perfusion_W_per_K * (state[3:] - net.deep_C)
-        return np.asarray(heat / capacity)
-
-    start = state_under_current(net, CUE.current_A[0])
-    begin = run_to_the_end(rig, start)
-    solved = solve_ivp(slopes, (0, 60), np.concatenate([[sink], begin[:-1]]), method="BDF", rtol=1e-9, atol=1e-9)
-    ours = found.values[:, 2, 0, -1]
-    hot_plate, display = solved.y[1, -1], solved.y[2, -1]
-    assert ours[WATCHED.index("hot_plate_C")] == pytest.approx(hot_plate, abs=2e-3)
-    assert ours[WATCHED.index("display_C")] == pytest.approx(display, abs=2e-3)
-    assert found.values[WATCHED.index("display_C"), 2, 0, at] == pytest.approx(begin[1], abs=1e-3)
 
 
 def run_to_the_end(rig: Rig, start: np.ndarray) -> np.ndarray:

@@ -22,7 +22,7 @@ icon cool {{ cool by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }}
 """
 RIG, SIX = Rig.load("thenar"), read_cue("six-icons")
 STEP = SIX["cooling-step"]
-SINK = ("capacity_J_per_K=200", "kp_W_per_K=5", "ki_W_per_Ks=0.5", "power_limit_W=40")
+SINK = ("capacity_J_per_K=200", "air_resistance_K_per_W=1.5")
 """A hot plate under its own loop."""
 
 
@@ -140,7 +140,7 @@ def test_icons_that_prescribe_current_are_played_by_their_means() -> None:
         play_session(icons, SessionPlan(("push",)), RIG, tracking="display")
 
 
-def test_a_loop_and_a_sink_of_its_own_are_played() -> None:
+def test_a_loop_and_a_passive_sink_are_played() -> None:
     loop = RIG.with_(controller={"kp_A_per_K": 0.4, "ki_A_per_Ks": 0.3, "kd_As_per_K": 0.0, "lag_s": 0.05})
     sink = RIG.with_set([f"heat_sink.{each}" for each in SINK])
     for other in (loop, sink):

@@ -58,7 +58,7 @@ def energies(drive: Drive, rig: Rig, rate_Hz: float, begin: int = 0) -> dict[str
 )
 @pytest.mark.parametrize("rig", RIGS, ids=lambda rig: rig.name)
 def test_energy_closes(rig: Rig, drive: Drive, rate_Hz: float, begin: int) -> None:
-    assert rig.heat_sink.controller is None  # an ideal sink: what it takes is known from the hot plate
+    assert rig.heat_sink.passive is None  # an ideal sink: what it takes is known from the hot plate
     joules = energies(drive, rig, rate_Hz, begin)
     assert rig is PRINTED or np.abs(joules["perfusion"]).sum() > 0.01
     balances = {

@@ -70,7 +70,7 @@ def test_a_pause_is_the_same_as_a_map() -> None:
     modes, state = few.modes(0.08), few.at_rest(0.4)
     matrix, constant = modes.passage(12.5)
     free = np.einsum("rij,rj->ri", matrix, state.nodes_C[:, :-1]) + constant
-    assert np.abs(free - few.rest(0.08, State(state.nodes_C, state.sink), 12.5).nodes_C[:, :-1]).max() < 1e-9
+    assert np.abs(free - few.rest(0.08, State(state.nodes_C), 12.5).nodes_C[:, :-1]).max() < 1e-9
     assert matrix.min() > -1e-9, "no node gets colder because another is warmer"
 
 

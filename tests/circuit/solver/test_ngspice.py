@@ -89,15 +89,10 @@ BODIES = {
 }  # fmt: skip
 
 
-OWN = {"capacity_J_per_K": 60.0, "kp_W_per_K": 8.0, "ki_W_per_Ks": 1.0, "power_limit_W": 9.0}
-CONTROLLED = {f"heat_sink.{key}": value for key, value in OWN.items()}
-STRONG = Drive([0, 1, 1.5, 9, 9.5, 20], [0.1, 0.1, 1.4, 1.4, 0.2, 0.2])
 PLAYED: dict[str, tuple[str, dict[str, object], Drive]] = {
     **{f"{kind} on {name}": (name, {}, drive) for name in ("thenar", "shani2021")
        for kind, drive in (("corners", CORNERS), ("jumps", JUMPS), ("beside", BESIDE))},
     **{body: ("thenar", dict(keys), CORNERS) for body, keys in BODIES.items()},
-    "sink under PI": ("shani2021", {**CONTROLLED}, STRONG),
-    "sink under P": ("shani2021", {**CONTROLLED, "heat_sink.ki_W_per_Ks": 0.0}, STRONG),
 }  # fmt: skip
 
 

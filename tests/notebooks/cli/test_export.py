@@ -102,18 +102,6 @@ def test_unsafe_even_when_forced(cli: Cli, tmp_path: Path, cue: str, more: tuple
     assert not (tmp_path / "out").exists()
 
 
-def test_what_is_too_long_for_its_heat_sink_is_not_judged_even_when_forced(cli: Cli, two: Path) -> None:
-    keys = ("capacity_J_per_K=60", "kp_W_per_K=8", "ki_W_per_Ks=1", "power_limit_W=9")
-    more = [word for key in keys for word in ("--set", f"heat_sink.{key}")]
-    out = two.parent / "out"
-    said = cli("export", two, "--to", "csv", "-o", out, "--force", *more, "--set", "driver.update_Hz=2600")
-    assert (said.exit_code, said.stdout, out.exists()) == (3, "", False)
-    refused, nothing = said.stderr.splitlines()[-2:]
-    assert refused.startswith("refused: not judged: too long: drive 1 of 2 is 8 s in 20,8"), refused
-    assert nothing == "nothing was written"
-    assert not re.search(r"\d °C|NOT SAFE", said.stderr)
-
-
 @pytest.mark.parametrize(
     ("to", "more", "words"),
     [
