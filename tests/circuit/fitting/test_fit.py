@@ -188,6 +188,15 @@ def test_the_shift_of_a_clock_is_found(shift: float, log: Log, trace: Trace) -> 
     assert abs(display.largest) == pytest.approx(float(np.abs(display.difference).max()))
 
 
+@pytest.mark.parametrize("since_s", [0.0, 1.7e9 + 0.3])
+def test_a_log_in_seconds_of_any_clock_keeps_its_first_and_last_row(since_s: float, log: Log, trace: Trace) -> None:
+    later = Log.of("clock.csv", {"time_s": log.time_s + since_s, **dict(log.columns)})
+    laid = overlay(trace, later, shift_s=-since_s)
+    assert {len(column.time_s) for column in laid.columns} == {len(log.time_s)}
+    laid = overlay(trace, later, shift_s=1e-3 - since_s)
+    assert {len(column.time_s) for column in laid.columns} == {len(log.time_s) - 1}
+
+
 def test_a_shift_can_be_given_and_must_overlap(log: Log, trace: Trace) -> None:
     assert overlay(trace, log, shift_s=0.5).shift_s == 0.5
     with pytest.raises(LogError, match="no row at a time of the trace, 0 to 60 s, with a shift of 500 s; check time_s"):
