@@ -101,8 +101,9 @@ def sets_table(found: Observed[Any, Any], files: Sequence[str]) -> Grid:
                 f"{a:.2f} ({b:.2f}–{c:.2f})" if shown == "bits" else f"{percent(a)} ({percent_span(b, c)})"
                 for a, b, c in ends
             ]
-            change = [f"{each.narrowed(name):.2f} ×"] * enough
-            rows.append([Path(file).name if shown == FELT else "", shown, *cells, *change])
+            if enough:
+                cells.append(f"{each.narrowed(name):.2f} ×")
+            rows.append([Path(file).name if shown == FELT else "", shown, *cells])
     return grid(columns, rows, columns[2:])
 
 

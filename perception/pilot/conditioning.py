@@ -181,7 +181,7 @@ class Namings:
         """What the answers say without a model, in words."""
         named, ends = self.pooled.named, self.pooled.named_interval
         assert named is not None and ends is not None  # somebody answered
-        return f"{percent(named)} named ({percent_span(*ends)})"
+        return f"{percent(named)} named, 95 % interval {percent_span(*ends)}"
 
     def simulate(self, some: Laboratories, step: Step | None = None) -> Confusions:
         """Confusions of the people of each laboratory."""
