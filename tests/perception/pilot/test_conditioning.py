@@ -94,6 +94,21 @@ def test_however_many_answers_there_are_the_laboratory_is_found(participants: in
     assert 0.02 < sample.std() < (0.2 if participants == 80 else 0.12)
 
 
+@pytest.mark.parametrize(("times", "near", "least"), [(1, 0.5, 0.0015), (1000, 0.447, 0.0015), (1e-3, 1.0, 0.9)])
+def test_laboratories_far_from_many_answers_keep_a_weight_and_from_few_the_same(
+    times: float, near: float, least: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of laboratories that are up to 50 less likely in ln L, or so many times that."""
+    given: list[np.ndarray] = []
+    monkeypatch.setattr(conditioning.PooledLikelihood, "fit", lambda *arguments: given.append(arguments[-1]))
+    some = laboratories(101, 1)
+    answered(answers(0.8, 4, 10, seed=4)).polynomial(
+        some.place, Toy().confusions(some), times * np.linspace(0.0, 50.0, 101)
+    )
+    assert given[0][4] == pytest.approx(near, rel=0.01)  # 2 in ln L
+    assert given[0][90] >= least
+
+
 @pytest.mark.parametrize("times", [1, 1000, 10_000_000])
 def test_the_least_variance_of_a_cell_decides_nothing(times: int, monkeypatch: pytest.MonkeyPatch) -> None:
     some, grid = laboratories(200, 3), laboratories(50, 5).place

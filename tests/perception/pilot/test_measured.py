@@ -74,7 +74,7 @@ def test_trials_of_which_none_is_felt_leave_the_rest_as_it_is(participants: int)
     """They do not scatter: their SD is 0, of which there is no logarithm."""
     chance = np.random.default_rng(3)
     place, ones = chance.standard_normal((200, 3)), np.ones((participants, 2))
-    mean, between = np.stack([place[:, 0], np.ones(200)], axis=1), np.tile(0.04 * np.eye(2), (200, 1, 1))
+    mean, between = place[:, :2], np.tile(0.04 * np.eye(2), (200, 1, 1))
     some = Measurements(USUAL[:2], tuple(f"P{k}" for k in range(participants)), 1.5 * ones, np.nan * ones, 9.0 * ones)
     silent, loud = (
         Emulator.fit(some, place, SimulatedMeasurements(mean, between, np.tile([0.1, within], (200, 1))), np.ones(200))(
