@@ -31,6 +31,7 @@ MINUTES = {
     "tests/notebooks/cli": 1.0,
     "tests/notebooks/test_tutorials.py": 1.0,
     "tests/perception/evidence": 8.0,
+    "tests/perception/pilot": 5.0,
     "tests/perception/selection": 7.0,
     "tests/test_package.py": 1.0,
     "tests/test_readme.py": 1.0,

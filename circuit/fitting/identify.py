@@ -13,7 +13,7 @@ from ..rig.rig import Rig
 from .keys import CONTACT, value_of
 from .problem import FitProblem
 from .runs import Channel
-from .solve import Solution, covariance_of
+from .solve import Solution, covariance_of, inverse_of
 
 T95 = 1.96
 """Half of a 95 % interval in standard deviations, of a normal distribution."""
@@ -156,7 +156,7 @@ def tellable(problem: FitProblem) -> tuple[str, ...]:
     told = dict[int, float]()
     for place in range(count):
         columns = [*told, place, *along]
-        deviations = np.sqrt(np.abs(np.diag(np.linalg.pinv(information[np.ix_(columns, columns)], hermitian=True))))
+        deviations = np.sqrt(np.abs(np.diag(inverse_of(information[np.ix_(columns, columns)]))))
         keys = [problem.keys[k] for k in (*told, place)]
         wide = [half_width(key.log, float(sd)) for key, sd in zip(keys, deviations, strict=False)]
         good = all(width < key.usual for key, width in zip(keys, wide, strict=True))

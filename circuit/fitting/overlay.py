@@ -87,7 +87,9 @@ def overlay(trace: Trace, log: Log, *, shift_s: float | None = None) -> Overlay:
         lead = min(common, key=lambda name: SHIFTED_BY.index(name) if name in SHIFTED_BY else len(SHIFTED_BY))
         shift_s = best_shift_s(trace.time_s, simulated[lead], log.time_s, log.column(lead))[0]
     time = log.time_s + shift_s
-    inside = (time >= trace.time_s[0] - 1e-9) & (time <= trace.time_s[-1] + 1e-9)
+    # Seconds since 1970 are off by 0.2 µs: such a log must not lose its first or last row.
+    rounding = max(1e-9, 2.0 * float(np.spacing(np.abs(log.time_s).max() + abs(shift_s))))
+    inside = (time >= trace.time_s[0] - rounding) & (time <= trace.time_s[-1] + rounding)
     columns = []
     for name in common:
         rows = inside & np.isfinite(log.column(name))

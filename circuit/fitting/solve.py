@@ -117,5 +117,17 @@ def covariance_of(problem: FitProblem, jacobian: Array, inflation: Sequence[floa
         shared = jacobian.T @ mesh
         middle += np.outer(shared, shared)
     room = np.diag([(0.5 * (item.high - item.low)) ** -2.0 if item.kind == "key" else 0.0 for item in problem.unknowns])
-    inverse = np.linalg.pinv(information + room, hermitian=True)
+    inverse = inverse_of(information + room)
     return np.asarray(inverse @ (middle + room) @ inverse)
+
+
+def inverse_of(information: Array) -> Array:
+    """Inverse of information (n, n), 0 for what nothing is known of.
+
+    Each number is taken in SDs that it has alone: in one scale, rows enough on one number, such as a clock's drift,
+    would make all that is known of another look like rounding, and its variance 0.
+    """
+    size = np.sqrt(np.diag(information))
+    alone = np.divide(1.0, size, out=np.zeros_like(size), where=size > 0.0)
+    scale = np.outer(alone, alone)
+    return np.asarray(scale * np.linalg.pinv(scale * information, hermitian=True))

@@ -243,13 +243,17 @@ def condition(
         write_text(found.to_json() + "\n", json)
     figure.write(lambda: observed_figure(found, figure.look))
     last = KEEP_IT
-    if keep is not None and drawn is not None:
+    if keep is not None and drawn is not None and not found.unusable:
         _keep(found, keep, drawn)
         kept = replace(crowd, seed=0, observer=drawn)
         last = f"Predict for this laboratory:\n  {command_text(files[:1], rig, kept, paths=True)}"
-    if json == STDOUT:
-        return
-    show(observed_report(found, files, last))
+    if json != STDOUT:
+        show(observed_report(found, files, last))
+    if keep is not None and found.unusable:
+        raise OutputError(
+            f"{keep} is not written: there are no draws of this laboratory, since the likelihood of the "
+            f"{found.data.noun} cannot be used; check the table, or use more --draws, or another --seed"
+        )
 
 
 def _keep(found: Observed[Any, Any], keep: Path, drawn: Path) -> None:

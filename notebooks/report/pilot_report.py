@@ -13,7 +13,7 @@ from .blocks import Block, Bullets, Grid, Heading, Text, grid, printed_unit
 if TYPE_CHECKING:
     from thermicon.perception.pilot.conditioning import MeasuredValues, Namings
     from thermicon.perception.pilot.observed import Observed
-    from thermicon.perception.pilot.prediction import Fit, MeasurementFit
+    from thermicon.perception.pilot.prediction import ConditionFit, Fit, MeasurementFit
     from thermicon.perception.pilot.sealed import SealedScores
     from thermicon.perception.pilot.trials import AnswerScore
 
@@ -85,33 +85,35 @@ def observed_report(found: Observed[Any, Any], files: Sequence[str], last: str =
         *told,
         sets_table(found, files),
         Text("\n".join(draws_sentences(found))),
-        *constants(found),
-        Text(last),
+        *([] if found.unusable else [*constants(found), Text(last)]),
     ]
 
 
 def sets_table(found: Observed[Any, Any], files: Sequence[str]) -> Grid:
     """What is felt and named, named, and in bits, of each set by people who did not take part: before and after."""
     enough = len(found.conditioned.after) >= LEAST_LABORATORIES
-    columns = ["set", "", "before (95 %)", "after (95 %)"] + ["narrower"] * enough
+    columns = ["set", "", "before (95 %)"] + ["after (95 %)"] * (not found.unusable) + ["narrower"] * enough
     rows = []
     for file, each in zip(files, found.predictions, strict=True):
         for name, shown in SHOWN.items():
-            ends = [getattr(one, name) for one in (each.before, each.after)]
+            ends = [getattr(one, name) for one in (each.before, each.after) if one is not None]
             cells = [
                 f"{a:.2f} ({b:.2f}–{c:.2f})" if shown == "bits" else f"{percent(a)} ({percent_span(b, c)})"
                 for a, b, c in ends
             ]
-            change = [f"{each.narrowed(name):.2f} ×"] * enough
-            rows.append([Path(file).name if shown == FELT else "", shown, *cells, *change])
-    return grid(columns, rows, ("before (95 %)", "after (95 %)", "narrower"))
+            if enough:
+                cells.append(f"{each.narrowed(name):.2f} ×")
+            rows.append([Path(file).name if shown == FELT else "", shown, *cells])
+    return grid(columns, rows, columns[2:])
 
 
 def draws_sentences(found: Observed[Any, Any]) -> list[str]:
     """The number of draws that carry the result, and the constants that moved."""
     from thermicon.perception.pilot.conditioning import Namings
 
-    own, people, answered = found.conditioned, found.predictions[0].after.people, isinstance(found.data, Namings)
+    own, people, answered = found.conditioned, found.predictions[0].before.people, isinstance(found.data, Namings)
+    if found.unusable:
+        return [f"Before is for {people} people who did not take part, with 95 % of laboratories.", found.unusable]
     carried = f"effective sample size {own.effective:.0f} of {len(own.before)} draws"
     if own.rounds:
         rounds = "1 round" if own.rounds == 1 else f"{own.rounds} rounds"
@@ -147,14 +149,25 @@ def constants(found: Observed[Any, Any]) -> list[Block]:
 
 def measured_blocks(found: Observed[MeasuredValues, MeasurementFit]) -> list[Block]:
     """One row per condition: geometric mean of the participants, the predicted one before and after, and the fit."""
-    columns = ("condition", "people", "measured", "predicted", "95 %", "after", "95 %")
-    rows = []
-    for before, after in zip(found.fit.conditions, found.fit_after.conditions, strict=True):
-        measured = f"{before.observed:.3g} {before.condition.unit}" + " *" * before.missed
-        ends = [(f"{each.predicted[0]:.3g}", f"{each.predicted[1]:.3g}–{each.predicted[2]:.3g}")
-                for each in (before, after)]  # fmt: skip
-        rows.append((before.condition.label, str(before.participants), measured, *ends[0], *ends[1]))
+    columns = ["condition", "people", "measured", "predicted", "95 %"]
+    rows = [
+        [
+            each.condition.label,
+            str(each.participants),
+            f"{each.observed:.3g} {each.condition.unit}" + " *" * each.missed,
+            *_predicted(each),
+        ]
+        for each in found.fit.conditions
+    ]
+    if found.fit_after is not None:
+        columns += ["after", "95 %"]
+        rows = [[*row, *_predicted(each)] for row, each in zip(rows, found.fit_after.conditions, strict=True)]
     return [grid(columns, rows, ("people", "measured")), Text("\n".join(measured_sentences(found)))]
+
+
+def _predicted(fit: ConditionFit) -> tuple[str, str]:
+    middle, low, high = fit.predicted
+    return f"{middle:.3g}", f"{low:.3g}–{high:.3g}"
 
 
 def measured_sentences(found: Observed[MeasuredValues, MeasurementFit]) -> list[str]:
@@ -166,15 +179,12 @@ def measured_sentences(found: Observed[MeasuredValues, MeasurementFit]) -> list[
     missed = sum(each.missed for each in found.fit.conditions)
     if missed:
         lines.append(f"* lies outside its predicted 95 % ({missed} of {len(found.fit.conditions)}).")
-    before, after = found.fit.p, found.fit_after.p
+    before, after = found.fit.p, p_after(found)
     why = misfit(before, after, "values", len(found.conditioned.after), "; check units, method and stimulus")
     verdict = why or "the measurements are what the prediction allows"
     if values.total < LEAST_VALUES:
         verdict = f"{values.total} values are too few to judge the model by; {LEAST_VALUES} or more can"
-    lines.append(
-        f"Test of fit (posterior predictive): {p_text(before)} before, {p_text(after)} after the values were used: "
-        f"{verdict}"
-    )
+    lines.append(f"Test of fit (posterior predictive): {p_texts(before, after, 'values')}: {verdict}")
     if count := values.assumed_errors:
         lines.append(
             f"{count} of {values.total} values have neither standard_error nor trials: an error of 10 % is assumed."
@@ -261,8 +271,7 @@ def fit_sentences(found: Observed[Namings, Fit]) -> list[str]:
         f"{percent(float(seen.trace() / seen.sum()))}, {pooled.information_bits_plugin:.2f} bits. This prediction is "
         "the median of experiments with as many participants and trials; that of the set, below, is the mean over "
         "people and laboratories, so the two may differ.",
-        f"Test of fit (posterior predictive): {p_text(fit.p)} before, {p_text(found.fit_after.p)} after the "
-        f"answers were used{_verdict(found)}",
+        f"Test of fit (posterior predictive): {p_texts(fit.p, p_after(found), 'answers')}{_verdict(found)}",
     ]
     if fit.p_people is not None:
         lines.append(f"Participants differ as much or more in {percent(fit.p_people)} of simulated experiments.")
@@ -271,8 +280,8 @@ def fit_sentences(found: Observed[Namings, Fit]) -> list[str]:
 
 def reports(found: Observed[Namings, Fit]) -> list[Block]:
     """Felt and named beside its prediction, the test of fit of what was felt, and the icons that it missed."""
-    fit, pooled = found.fit, found.data.pooled
-    if fit.felt_and_named is None or fit.p_reports is None or found.fit_after.p_reports is None:
+    fit, after, pooled = found.fit, found.fit_after, found.data.pooled
+    if fit.felt_and_named is None or fit.p_reports is None:
         return []
     middle, low, high = fit.felt_and_named
     verdict = "the prediction of what is felt missed" if fit.p_reports < POOR else "they are what the prediction allows"
@@ -280,8 +289,8 @@ def reports(found: Observed[Namings, Fit]) -> list[Block]:
         verdict = f"{pooled.trials} trials are too few to judge the model by; {LEAST_TRIALS} or more can"
     text = (
         f"Predicted for this experiment: {percent(middle)} felt and named ({percent_span(low, high)}). Observed: "
-        f"{percent(pooled.proportion_correct)}.\nTest of fit of the plays that were felt: {p_text(fit.p_reports)} "
-        f"before, {p_text(found.fit_after.p_reports)} after the answers were used: {verdict}"
+        f"{percent(pooled.proportion_correct)}.\nTest of fit of the plays that were felt: "
+        f"{p_texts(fit.p_reports, None if after is None else after.p_reports, 'answers')}: {verdict}"
     )
     points = [
         f"{each.a}: {round(each.observed * each.trials)} of {each.trials} not felt; predicted "
@@ -314,11 +323,21 @@ def p_text(p: float) -> str:
     return "p under 0.01" if p < 0.01 else f"p = {p:.2f}"
 
 
+def p_after(found: Observed[Any, Any]) -> float | None:
+    """The p of the test of fit after the data were used; None where they have no usable likelihood."""
+    return None if found.fit_after is None else float(found.fit_after.p)
+
+
+def p_texts(before: float, after: float | None, what: str) -> str:
+    """The p of a test of fit before the data and, where they were used, after."""
+    return f"{p_text(before)} before" + ("" if after is None else f", {p_text(after)} after the {what} were used")
+
+
 def _verdict(found: Observed[Namings, Fit]) -> str:
     if (total := int(found.data.trials.counts.sum())) < LEAST_TRIALS:
         few = "1 answer is too little" if total == 1 else f"{total} answers are too few"
         return f": {few} to judge the model by; {LEAST_TRIALS} or more can"
-    why = misfit(found.fit.p, found.fit_after.p, "answers", len(found.conditioned.after))
+    why = misfit(found.fit.p, p_after(found), "answers", len(found.conditioned.after))
     if why:
         return f": {why}"
     missed, pairs = len(found.fit.missed), len(found.fit.pairs)
@@ -332,12 +351,16 @@ def _verdict(found: Observed[Namings, Fit]) -> str:
     return ": the answers are what the prediction allows"
 
 
-def misfit(before: float, after: float, what: str, laboratories: int, cure: str = "") -> str:
+def misfit(before: float, after: float | None, what: str, laboratories: int, cure: str = "") -> str:
     """The meaning of a small p, with a cure where the model cannot explain it; empty where neither is small.
+
+    `after` is None where the data were not used.
 
     >>> misfit(0.02, 0.3, "answers", 500)
     'the prediction missed, but laboratories that the evidence allows explain the answers'
     """
+    if after is None:
+        return "the prediction missed" if before < POOR else ""
     if after < POOR and laboratories < LEAST_LABORATORIES:
         return (
             f"the {what} are unlikely, but {laboratories} laboratories are too few to say that no constants explain "

@@ -4,6 +4,7 @@
 2. With at least `LEAST_EFFECTIVE` draws behind the data, laboratories are resampled by these weights.
 3. Otherwise fresh laboratories are sampled from the prior times a likelihood that is a polynomial of the coordinates,
    fitted to those simulated so far, and simulated. Those of measurements are weighed by what the polynomial missed.
+4. Where a likelihood cannot be computed, nothing is sampled, and the data stand alone.
 """
 
 from collections.abc import Callable
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 
 from thermicon.base.numbers.arrays import Array
 from thermicon.base.numbers.cores import quiet_blas
+from thermicon.base.words.number_text import percent, percent_span
 
 from ..experiments.measure import Setting
 from .likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights, walk
@@ -33,6 +35,9 @@ With few participants, of whom one is unusual, weights of little effect still er
 NEAR_ANSWERS, NEAR_VALUES = 2.0, 25.0
 """Ln L by which a laboratory is less likely than those near the data if it counts half in a fit: those far from the
 data keep the polynomial from bending there, and count for little else."""
+FARTHEST = 25.0
+"""Nine in ten laboratories are less likely by at most so many times that ln L of answers, which else grows: it is
+squared, and with thousands of answers those far away would not count at all."""
 Step = Callable[[], None]
 Data: TypeAlias = "Namings | MeasuredValues"
 
@@ -42,7 +47,8 @@ class Conditioned:
     """The weighed laboratories `before` data, and `after`, a sample of equal weights.
 
     `effective` is the effective sample size of the weights, `effective_after` how many independent draws stand behind
-    `after`, `rounds` how often fresh laboratories were simulated (0: the weights sufficed).
+    `after`, `rounds` how often fresh laboratories were simulated (0: the weights sufficed). `unusable` says why there
+    is no likelihood, and then `after` is empty; otherwise it is empty itself.
     """
 
     before: Laboratories
@@ -52,6 +58,7 @@ class Conditioned:
     simulated_after: Any
     effective_after: float
     rounds: int
+    unusable: str = ""
 
 
 @quiet_blas()
@@ -62,6 +69,20 @@ def condition(
     rng = np.random.default_rng(np.random.SeedSequence([seed, data.stream]))
     kept = max(2, len(before) // 2) if kept is None else kept
     simulated: Any = data.simulate(before, step)
+    try:
+        return _sampled(data, before, simulated, kept, rng, step)
+    except np.linalg.LinAlgError:
+        why = "the covariance matrix of the data cannot be factorised"
+    except FloatingPointError:
+        why = "it is not a finite number"
+    nobody = np.zeros(0, dtype=np.int64)
+    return Conditioned(before, simulated, 0.0, before.of(nobody), simulated.of(nobody), 0.0, 0, why)
+
+
+def _sampled(
+    data: Data, before: Laboratories, simulated: Any, kept: int, rng: np.random.Generator, step: Step | None
+) -> Conditioned:
+    """Laboratories after the data; a LinAlgError or a FloatingPointError where their likelihood cannot be computed."""
     logs = data.log_likelihood(simulated)
     weights = normalised_weights(logs)
     size = effective(weights)
@@ -140,6 +161,7 @@ class Namings:
     trials: Trials
     stage: Stage = field(repr=False)
     stream: ClassVar[int] = 12
+    noun: ClassVar[str] = "answers"
     rounds: ClassVar[int] = 2
     by_people: ClassVar[bool] = True
 
@@ -154,6 +176,13 @@ class Namings:
         rows = zip(self.trials.participants, self.trials.counts, self.trials.unanswered, strict=True)
         return tuple(score(name, counts[None], float(missing.sum())) for name, counts, missing in rows)
 
+    @property
+    def alone(self) -> str:
+        """What the answers say without a model, in words."""
+        named, ends = self.pooled.named, self.pooled.named_interval
+        assert named is not None and ends is not None  # somebody answered
+        return f"{percent(named)} named, 95 % interval {percent_span(*ends)}"
+
     def simulate(self, some: Laboratories, step: Step | None = None) -> Confusions:
         """Confusions of the people of each laboratory."""
         return self.stage.confusions(some, step)
@@ -164,7 +193,9 @@ class Namings:
 
     def polynomial(self, place: Array, simulated: Confusions, short: Array) -> Callable[[Array], Array]:
         """Ln likelihood of the pooled answers."""
-        return PooledLikelihood.fit(place, simulated, self.trials.counts, 1.0 / (1.0 + np.square(short / NEAR_ANSWERS)))
+        near = max(NEAR_ANSWERS, float(np.quantile(short, 0.9)) / FARTHEST)
+        weight = 1.0 / (1.0 + np.square(short / near))
+        return PooledLikelihood.fit(place, simulated, self.trials.counts, weight)
 
     def compare(self, simulated: Confusions, seed: int) -> Fit:
         """The answers beside those of the same experiment in these laboratories."""
@@ -212,8 +243,15 @@ class MeasuredValues:
     prior: LaboratoryPrior = field(repr=False)
     setting: Setting = field(repr=False)
     stream: ClassVar[int] = 31
+    noun: ClassVar[str] = "values"
     rounds: ClassVar[int] = 3
     by_people: ClassVar[bool] = False
+
+    @property
+    def alone(self) -> str:
+        """What the values say without a model, in words."""
+        rows = zip(self.measurements.conditions, self.measurements.means.tolist(), strict=True)
+        return "; ".join(f"{condition.label}: {mean:.3g} {condition.unit}" for condition, mean in rows)
 
     def simulate(self, some: Laboratories, step: Step | None = None) -> SimulatedMeasurements:
         """Means, covariances and scatter of the values in each laboratory."""

@@ -29,13 +29,14 @@ from numpy.typing import NDArray
 
 from thermicon.base.numbers.arrays import Array
 
-from .playing import Confusions, Small
+from ..identification.confusion import normalised
+from .playing import Confusions
 
 AT_ONCE = 4_000_000
 """Logarithms of probabilities that are held at once: 32 MB."""
 
 
-def log_likelihoods(probability: Small, counts: Array) -> Array:
+def log_likelihoods(probability: Array, counts: Array) -> Array:
     """Ln L_j (laboratories, participants) of (laboratories, people, icons, icons) and (participants, icons, icons)."""
     laboratories, people = probability.shape[:2]
     used = np.flatnonzero(counts.sum(axis=0).ravel())
@@ -44,14 +45,17 @@ def log_likelihoods(probability: Small, counts: Array) -> Array:
     rows = max(1, AT_ONCE // max(people * used.size, 1))
     for start in range(0, laboratories, rows):
         part = probability[start : start + rows].reshape(-1, probability.shape[-1] ** 2)[:, used]
-        each[start : start + rows] = (np.log(part, dtype=np.float64) @ answers).reshape(-1, people, len(counts))
+        each[start : start + rows] = (np.log(part) @ answers).reshape(-1, people, len(counts))
     largest = each.max(axis=1)
     return np.asarray(largest + np.log(np.exp(each - largest[:, None]).mean(axis=1)))
 
 
 def normalised_weights(log_weights: Array) -> Array:
-    """Weights that add up to 1, from their logarithms."""
-    own = np.exp(log_weights - log_weights.max())
+    """Weights that add up to 1, from their logarithms; a FloatingPointError where these are not numbers."""
+    largest = float(log_weights.max())
+    if not np.isfinite(largest):
+        raise FloatingPointError(f"the largest log weight is {largest}")
+    own = np.exp(log_weights - largest)
     return np.asarray(own / own.sum())
 
 
@@ -65,8 +69,9 @@ DIRECTIONS, LEAST_RATIO = 10, 0.05
 STRONGEST = 8
 """Coordinates whose products are fitted: no pair of weaker ones shows."""
 PENALTIES = tuple(10.0 ** (k / 2) for k in range(9))
-RIDGE = 1e-6
-"""Least variance of a cell of the pooled answers, in answers²."""
+RIDGE = 1e-9
+"""Least variance of a cell of the pooled answers, as a share of the mean over cells: far above rounding, and far below
+the variance of the rarest answer."""
 STEPS, RISING, STEP = 1500, 0.5, 0.3
 """Steps of a walk, the share of them in which the power of the likelihood rises to 1, and the first step size."""
 ACCEPTED = 0.3
@@ -83,11 +88,17 @@ class PooledLikelihood:
 
     @classmethod
     def fit(cls, place: Array, played: Confusions, counts: Array, weight: Array | None = None) -> PooledLikelihood:
-        """Fit to laboratories at coordinates (n, d) with a `weight` (n,), for answers (participants, icons, icons)."""
+        """Fit to laboratories at coordinates (n, d) with a `weight` (n,), for answers (participants, icons, icons).
+
+        A LinAlgError where V cannot be factorised.
+        """
         own = np.ones(len(place)) if weight is None else weight / weight.mean()
         shown = counts.sum(axis=2)
-        mean, noise = _moments(played, shown, own)
-        root: Any = np.linalg.cholesky(noise + RIDGE * np.eye(len(noise)))
+        # All answers to an icon together have no variance: rows that do not add up to 1 would give them some below 0.
+        people = normalised(np.asarray(played.probability, dtype=np.float64))
+        mean, noise = _moments(people, shown, own)
+        least = RIDGE * float(np.trace(noise)) / len(noise)
+        root: Any = np.linalg.cholesky(noise + least * np.eye(len(noise)))
         whitened: Array = np.linalg.solve(root, mean.T).T
         seen: Array = np.linalg.solve(root, counts.sum(axis=0).ravel() - mean.mean(axis=0))
         whitened = whitened - whitened.mean(axis=0)
@@ -97,7 +108,7 @@ class PooledLikelihood:
         used = np.flatnonzero(sizes > LEAST_RATIO)[::-1][:DIRECTIONS]
         turned = turned[:, used] if used.size else turned[:, -1:]
         coefficients, missed = ridge(features, whitened @ turned, own)
-        left = np.maximum(missed - _people_share(played, shown, root, turned, own), 0.0)
+        left = np.maximum(missed - _people_share(people, shown, root, turned, own), 0.0)
         return cls(seen @ turned, coefficients, pairs, 1.0 + left)
 
     def __call__(self, place: Array) -> Array:
@@ -112,6 +123,8 @@ def walk(start: Array, target: Callable[[Array], Array], rng: np.random.Generato
     Preconditioned Crank–Nicolson; the power of the likelihood rises to 1 in the first half, in which the step is set.
     """
     place, value, step = start.copy(), target(start), STEP
+    if not np.isfinite(value).all():
+        raise FloatingPointError("the log likelihood is not finite where the walk starts")
     for k in range(STEPS):
         power = min(1.0, (k + 1) / (RISING * STEPS))
         proposed = np.sqrt(1.0 - step**2) * place + step * rng.standard_normal(place.shape)
@@ -123,29 +136,30 @@ def walk(start: Array, target: Callable[[Array], Array], rng: np.random.Generato
     return place
 
 
-def _moments(played: Confusions, shown: Array, weight: Array) -> tuple[Array, Array]:
+def _moments(people: Array, shown: Array, weight: Array) -> tuple[Array, Array]:
     """Expected pooled answers (laboratories, cells), and V (cells, cells), the mean over laboratories."""
     total, icons = shown.sum(axis=0), shown.shape[1]
-    mean = (played.pooled * total[:, None]).reshape(len(played.probability), -1)
+    mean = (people.mean(axis=1) * total[:, None]).reshape(len(people), -1)
     cells = np.repeat(total / total.sum(), icons)
-    each = played.probability.reshape(*played.probability.shape[:2], -1).astype(np.float64)
+    each = people.reshape(*people.shape[:2], -1)
     within = (each - each.mean(axis=1, keepdims=True)) * cells
-    flat = (within * np.sqrt(weight)[:, None, None]).reshape(-1, icons**2)
+    within *= np.sqrt(weight)[:, None, None]
+    flat = within.reshape(-1, icons**2)
     spread = flat.T @ flat / (len(flat) * (1.0 - 1.0 / each.shape[1]))
     # Participants with more trials weigh more in the sum.
     noise = spread * float(np.square(shown.sum(axis=1)).sum())
     for a in range(icons):
-        rows = played.probability[:, :, a].reshape(-1, icons).astype(np.float64)
+        rows = people[:, :, a].reshape(-1, icons)
         share = np.repeat(weight, each.shape[1]) / len(rows)
         own = slice(a * icons, (a + 1) * icons)
         noise[own, own] += total[a] * (np.diag(share @ rows) - (rows * share[:, None]).T @ rows)
     return mean, noise
 
 
-def _people_share(played: Confusions, shown: Array, root: Array, turned: Array, weight: Array) -> Array:
+def _people_share(people: Array, shown: Array, root: Array, turned: Array, weight: Array) -> Array:
     """Variance (directions,) of a simulated laboratory's mean with who its people are, in the whitened directions."""
     total = np.repeat(shown.sum(axis=0), shown.shape[1])
-    each = played.probability.reshape(*played.probability.shape[:2], -1).astype(np.float64)
+    each = people.reshape(*people.shape[:2], -1)
     along = ((each - each.mean(axis=1, keepdims=True)) * total) @ np.linalg.solve(root, np.eye(len(root))).T @ turned
     return np.asarray(weight @ np.square(along).mean(axis=1) / len(weight) / (each.shape[1] - 1))
 

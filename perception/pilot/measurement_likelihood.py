@@ -33,6 +33,9 @@ RATING_SCALE = 0.7
 RATING_PEOPLE = 0.4
 """SD (ln) by which people differ in their use of a scale; E2 has an SD of 23 points at a mean of 51."""
 NUGGET = 1e-6
+"""Least variance (ln²) between people: of people, however many take part, and above the rounding of any conditions."""
+LEAST_LOG, MOST_LOG = -8.0, 3.0
+"""Logs of SDs (ln) that polynomials may give; trials of which none is felt do not scatter at all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,16 +144,17 @@ def _flat(each: SimulatedMeasurements) -> Array:
     root = np.linalg.cholesky(each.between + NUGGET * np.eye(each.mean.shape[1]))
     rows, columns = np.tril_indices(each.mean.shape[1], -1)
     diagonal = np.log(np.diagonal(root, axis1=1, axis2=2))
-    return np.hstack([each.mean, np.log(each.within), diagonal, root[:, rows, columns]])
+    within = np.log(np.maximum(each.within, np.exp(LEAST_LOG)))
+    return np.hstack([each.mean, within, diagonal, root[:, rows, columns]])
 
 
 def _predicted(flat: Array, count: int) -> SimulatedMeasurements:
     rows, columns = np.tril_indices(count, -1)
     mean, within, diagonal, below = (flat[:, a:b] for a, b in pairwise((0, count, 2 * count, 3 * count, flat.shape[1])))
     root = np.zeros((len(flat), count, count))
-    root[:, range(count), range(count)] = np.exp(np.clip(diagonal, -8.0, 3.0))
+    root[:, range(count), range(count)] = np.exp(np.clip(diagonal, LEAST_LOG, MOST_LOG))
     root[:, rows, columns] = below
-    return SimulatedMeasurements(mean, root @ np.swapaxes(root, 1, 2), np.exp(np.clip(within, -8.0, 3.0)))
+    return SimulatedMeasurements(mean, root @ np.swapaxes(root, 1, 2), np.exp(np.clip(within, LEAST_LOG, MOST_LOG)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,7 +44,8 @@ class Observed(Drawn, Tabled, Generic[D, F]):
         The answers (`data.trials`) with scores of all together (`data.pooled`) and of each (`data.each`), or the
         values (`data.measurements`).
     fit, fit_after
-        The data beside what was predicted before, and beside what is predicted after they were seen.
+        The data beside what was predicted before, and beside what is predicted after they were seen (None: they have
+        no usable likelihood, and `unusable` says why).
     predictions
         The set, and then other sets, before and after.
     constants
@@ -55,7 +56,7 @@ class Observed(Drawn, Tabled, Generic[D, F]):
 
     data: D
     fit: F
-    fit_after: F
+    fit_after: F | None
     predictions: tuple[ChangedPrediction, ...]
     constants: tuple[ChangedConstant, ...]
     conditioned: Conditioned
@@ -67,6 +68,16 @@ class Observed(Drawn, Tabled, Generic[D, F]):
     memory: str
     seed: int
     version: str
+
+    @property
+    def unusable(self) -> str:
+        """Why the data could not sharpen the prediction, what they say alone, and the cure; empty where they did."""
+        why, noun = self.conditioned.unusable, self.data.noun
+        return why and (
+            f"The likelihood of the {noun} cannot be used: {why}. The prediction is not sharpened by them, and the "
+            f"{noun} alone are given: {self.data.alone}. Check the table for numbers that cannot be, or use more "
+            "draws, or another seed."
+        )
 
     @property
     def provenance(self) -> tuple[str, ...]:
@@ -84,7 +95,12 @@ class Observed(Drawn, Tabled, Generic[D, F]):
         return ", ".join((self.rig, *self.rig_changes))
 
     def draws(self) -> PosteriorDraws:
-        """Draws of constants and memory in this laboratory, equally weighted; its offset is part of the thresholds."""
+        """Draws of constants and memory in this laboratory, equally weighted; its offset is part of the thresholds.
+
+        A ValueError where the data have no usable likelihood.
+        """
+        if self.unusable:
+            raise ValueError(f"there are no draws of this laboratory. {self.unusable}")
         after, details = self.confusions_after, self.data.details(self.conditioned.simulated_after)
         predicted = np.column_stack([after.felt_and_named, after.correct, after.bits, details])
         return laboratory_draws(self.prior, self.conditioned, predicted, self.played, self.provenance, self._where)
@@ -104,7 +120,8 @@ class Observed(Drawn, Tabled, Generic[D, F]):
             "seed": self.seed,
             **self.data.to_dict(),
             "fit_before": _plain(self.fit),
-            "fit_after": _plain(self.fit_after),
+            "fit_after": None if self.fit_after is None else _plain(self.fit_after),
+            "unusable": self.unusable or None,
             "draws": len(found.before),
             "effective_sample_size": found.effective,
             "rounds": found.rounds,
@@ -116,7 +133,9 @@ class Observed(Drawn, Tabled, Generic[D, F]):
 
     def rows(self) -> list[dict[str, Any]]:
         """One row for each set before the data were seen, and one after."""
-        return [row for each in self.predictions for row in (each.before.row("before"), each.after.row("after"))]
+        pairs = ((each, when) for each in self.predictions for when in ("before", "after"))
+        shown = [(getattr(each, when), when) for each, when in pairs]
+        return [prediction.row(when) for prediction, when in shown if prediction is not None]
 
     def to_json(self) -> str:
         """Every number as JSON text."""
@@ -124,9 +143,17 @@ class Observed(Drawn, Tabled, Generic[D, F]):
 
     def __repr__(self) -> str:
         own = self.predictions[0]
-        ends = (own.before.proportion_correct, own.after.proportion_correct)
+        ends = [each.proportion_correct for each in (own.before, own.after) if each is not None]
         spans = " → ".join(f"{100 * low:.1f}–{100 * high:.1f} %" for _, low, high in ends)
+        if self.unusable:
+            return f"Observed({self.data!r}: {spans} before. {self.unusable})"
         return f"Observed({self.data!r}: {spans})"
+
+
+def _changed(prior: LaboratoryPrior, found: Conditioned) -> tuple[ChangedConstant, ...]:
+    """Constants that the data changed."""
+    before, after = prior.values(found.before), prior.values(found.after)
+    return changed(prior.names, before, after, found.effective_after, prior.units)
 
 
 def _plain(fit: Fit | MeasurementFit) -> dict[str, Any]:
@@ -214,17 +241,18 @@ def observed(
 
     pairs = [(found.simulated, found.simulated_after) if isinstance(trials, Trials) else both(main)]
     pairs += [both(stage(other, rig, prior, seed=seed, tracking=crowd.tracking)) for other in further]
+    sharpened = not found.unusable
     return Observed(
         data=data,
         fit=data.compare(found.simulated, seed),
-        fit_after=data.compare(found.simulated_after, seed),
+        fit_after=data.compare(found.simulated_after, seed) if sharpened else None,
         predictions=tuple(
-            ChangedPrediction(*(SetPrediction.of(each.title, one) for one in pair))
-            for each, pair in zip((icons, *further), pairs, strict=True)
+            ChangedPrediction(
+                SetPrediction.of(each.title, first), SetPrediction.of(each.title, then) if sharpened else None
+            )
+            for each, (first, then) in zip((icons, *further), pairs, strict=True)
         ),
-        constants=changed(
-            prior.names, prior.values(before), prior.values(found.after), found.effective_after, prior.units
-        ),
+        constants=_changed(prior, found) if sharpened else (),
         conditioned=found,
         confusions_after=pairs[0][1],
         prior=prior,

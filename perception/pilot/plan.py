@@ -247,7 +247,7 @@ def _shares(
 ) -> Array:
     """Proportion named (experiments, participants) of presentations as even as possible."""
     icons = len(one.icons)
-    chances = np.diagonal(one.probability, axis1=2, axis2=3)[where[:, None], invited].astype(np.float64)
+    chances = np.diagonal(one.probability, axis1=2, axis2=3)[where[:, None], invited]
     shown = np.full(chances.shape, trials // icons)
     if rest := trials % icons:
         shown += rng.random(chances.shape).argsort(axis=-1) < rest

@@ -12,6 +12,7 @@ from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet
 
+from ..identification.confusion import normalised
 from ..identification.depths import rungs
 from ..identification.laboratory_draws import EVERY, people_for_intervals
 from ..identification.measures import felt_and_named, information_bits
@@ -20,38 +21,37 @@ from ..kernels.parallel import in_order
 from ..observer.people import draw_people
 from .states import Laboratories, LaboratoryPrior
 
-Small = NDArray[np.float32]
 SAMPLES = 256
 """Presentations of an icon to a person; a cell of one person has a standard error of at most 0.03."""
 LEAST_PROBABILITY = 1e-4
 """No answer is less likely than this, whatever the lapses of a person: one odd answer must not rule out a draw."""
 MOST_CELLS = 60_000_000
-"""Cells of all confusions together, four bytes each; of larger sets fewer laboratories are simulated."""
+"""Cells of all confusions together, eight bytes each; of larger sets fewer laboratories are simulated."""
 MOST_ICONS = 64
 """More names than this nobody learns for an experiment."""
 
 
 @dataclass(frozen=True, slots=True)
 class Confusions:
-    """Confusions `probability` (laboratories, people, icons, icons) of announced icons, in single precision.
+    """Confusions `probability` (laboratories, people, icons, icons) of announced icons; rows add up to 1.
 
     `reported` (laboratories, people, icons) is the probability of a report by the same people, where nothing announces.
     """
 
     icons: tuple[str, ...]
-    probability: Small
-    reported: Small
+    probability: Array
+    reported: Array
 
     @property
     def felt_and_named(self) -> Array:
         """Share felt and named of every laboratory: of each person and icon, before the mean over them."""
         each = felt_and_named(self.reported, self.probability)
-        return np.asarray(each.mean(axis=(1, 2), dtype=np.float64))
+        return np.asarray(each.mean(axis=(1, 2)))
 
     @property
     def correct(self) -> Array:
         """Proportion named of every laboratory, as the mean over its people."""
-        each: Array = np.trace(self.probability, axis1=2, axis2=3, dtype=np.float64) / len(self.icons)
+        each: Array = np.trace(self.probability, axis1=2, axis2=3) / len(self.icons)
         return np.asarray(each.mean(axis=1))
 
     @property
@@ -62,7 +62,7 @@ class Confusions:
     @property
     def pooled(self) -> Array:
         """Mean over people (laboratories, icons, icons)."""
-        return np.asarray(self.probability.mean(axis=1, dtype=np.float64))
+        return np.asarray(self.probability.mean(axis=1))
 
     def of(self, which: NDArray[np.int64]) -> Confusions:
         """Those of some laboratories."""
@@ -87,22 +87,21 @@ class Stage:
         """What the people of each laboratory feel, and call the icons; `step` is called after each."""
         values, prior = self.prior.values(some), self.prior
 
-        def one(k: int) -> tuple[Small, Small]:
+        def one(k: int) -> tuple[Array, Array]:
             observer, offsets = prior.observer_of(values[k])
             people = draw_people(self.played.people, int(some.seed[k]), observer=observer, offsets=offsets)
             people = replace(people, contact_resistance=self.skins[0], outer_layer=self.skins[1])
             felt = respond(self.played, people, observer)
             named = identify(felt, prior.form, people, observer, int(some.seed[k]), SAMPLES)[1].probability
             reported = felt.detected.probability.clip(LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY)
-            return np.maximum(named, LEAST_PROBABILITY).astype(np.float32), reported.astype(np.float32)
+            return normalised(np.maximum(named, LEAST_PROBABILITY)), reported
 
-        reported = np.empty((len(some), self.played.people, len(self.icons)), dtype=np.float32)
-        found = np.empty((*reported.shape, len(self.icons)), dtype=np.float32)
+        reported = np.empty((len(some), self.played.people, len(self.icons)))
+        found = np.empty((*reported.shape, len(self.icons)))
         for k, each in enumerate(in_order(one, range(len(some)))):
             found[k], reported[k] = each
             if step is not None:
                 step()
-        found /= found.sum(axis=-1, keepdims=True)
         return Confusions(self.icons, found, reported)
 
 

@@ -30,6 +30,8 @@ LEAST_PEOPLE = 3
 """Participants that a spread between them needs to be compared."""
 Three = tuple[float, float, float]
 """Mean or median, and both ends of a 95 % interval."""
+ROUNDING = 1e-12
+"""Share by which sums that are the same may differ."""
 CHANCE = 6.0
 """Bits times draws that the largest of some fifty constants seems to gain by chance alone."""
 
@@ -64,15 +66,15 @@ class SetPrediction:
 
 @dataclass(frozen=True, slots=True)
 class ChangedPrediction:
-    """The prediction of one set before and after answers were seen."""
+    """The prediction of one set before and after data were seen; `after` is None where these have no likelihood."""
 
     before: SetPrediction
-    after: SetPrediction
+    after: SetPrediction | None
 
     @property
-    def narrower(self) -> float:
+    def narrower(self) -> float | None:
         """By which factor the interval of the proportion named got narrower (below 1: wider)."""
-        return self.narrowed("proportion_correct")
+        return None if self.after is None else self.narrowed("proportion_correct")
 
     def narrowed(self, score: str) -> float:
         """By which factor the interval of a score got narrower."""
@@ -202,7 +204,7 @@ def simulated_counts(played: Confusions, presented: Array, rng: np.random.Genera
     shown = presented.astype(np.int64)
     for k in range(EXPERIMENTS):
         invited = rng.integers(people, size=len(presented))
-        chances = played.probability[k % laboratories, invited].astype(np.float64)
+        chances = played.probability[k % laboratories, invited]
         found[k] = rng.multinomial(shown, chances / chances.sum(axis=-1, keepdims=True))
     return found
 
@@ -241,7 +243,7 @@ def compare_reports(trials: Trials, played: Confusions, *, seed: int = 0) -> dic
         felt = rng.binomial(presented, played.reported[invited])
         silent[k] = total - felt.sum(axis=0)
         alert[k] = rng.binomial(felt, named[invited]).sum() / total.sum()
-    share = 1.0 - played.reported.mean(axis=(0, 1), dtype=np.float64)
+    share = 1.0 - played.reported.mean(axis=(0, 1))
     used = np.flatnonzero(total)
     expected = (total * share)[used]
     variance = expected * (1.0 - share[used])
@@ -288,4 +290,4 @@ def compare_measurements(measured: Measurements, each: SimulatedMeasurements, *,
 
 def share_as_far(values: list[float]) -> float:
     """Share of all values, the first among them, that are at least the first."""
-    return float(np.mean(np.array(values) >= values[0] - 1e-12))
+    return float(np.mean(np.array(values) >= values[0] * (1.0 - ROUNDING)))

@@ -110,6 +110,7 @@ class LaboratoryPrior:
         first, places = self._held, self._middle + some.place[:, : self._held] @ self._spread
         rows, own = places[:, : len(self._scales)].tolist(), places[:, len(self._scales) :]
         constants = np.array([[p.to_value(v) for p, v in zip(self._scales, row, strict=True)] for row in rows])
+        constants = constants.reshape(len(some), len(self._scales))
         scores = np.hstack([own, some.place[:, first : first + self._free]])
         memory = np.array(
             [[p.at(NormalDist().cdf(z)) for p, z in zip(self.memory, row, strict=True)] for row in scores.tolist()]

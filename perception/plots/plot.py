@@ -139,10 +139,11 @@ def plot_sensitivity(found: Sensitivity, ax: Axes | None = None) -> Axes:
 
 
 def plot_observed(found: Observed[Any, Any], ax: Axes | None = None) -> Axes:
-    """Draw what is felt and named of each set with its 95 % interval, before the data were seen and after."""
+    """Draw what is felt and named of each set with its 95 % interval, before the data were seen and, if any, after."""
     axes = new_axes(ax, (6.4, 1.4 + 0.6 * len(found.predictions)))
     places = np.arange(len(found.predictions), dtype=np.float64)
-    for when, shift, colour in (("before", -HEIGHT / 3, GREY), ("after", HEIGHT / 3, DARK)):
+    marks = (("before", -HEIGHT / 3, GREY), ("after", HEIGHT / 3, DARK))
+    for when, shift, colour in marks[:1] if found.unusable else marks:
         shares = [getattr(each, when).felt_and_named for each in found.predictions]
         middle, low, high = 100.0 * np.array(shares).T
         axes.errorbar(middle, places + shift, xerr=(middle - low, high - middle), fmt="o", color=colour, label=when)

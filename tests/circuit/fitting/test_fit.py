@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, Trace, fit, simulate
+from thermicon.circuit import Drive, Rig, Trace, fit, simulate, simulate_current
 from thermicon.circuit.fitting.identify import half_width
 from thermicon.circuit.fitting.keys import FitError
 from thermicon.circuit.fitting.log import Log, LogError
@@ -186,6 +186,15 @@ def test_the_shift_of_a_clock_is_found(shift: float, log: Log, trace: Trace) -> 
     display = next(each for each in found.columns if each.column == "display_C")
     assert display.rms == pytest.approx(float(np.mean(display.difference**2)) ** 0.5)
     assert abs(display.largest) == pytest.approx(float(np.abs(display.difference).max()))
+
+
+@pytest.mark.parametrize("since_s", [0.0, 1.7e9])
+def test_a_log_in_seconds_of_any_clock_keeps_its_first_and_last_row(since_s: float, true_rig: Rig) -> None:
+    trace = simulate_current(Drive(np.array([0.0, 12.4]), np.array([0.1, 0.1])), true_rig, rate_Hz=20.0)
+    log = Log.of("clock.csv", {"time_s": trace.time_s + since_s, "display_C": trace.display_C})
+    for shift_s, lost in ((-since_s, 0), (1e-3 - since_s, 1), (-1e-3 - since_s, 1)):
+        (display,) = overlay(trace, log, shift_s=shift_s).columns
+        assert len(display.time_s) == len(trace.time_s) - lost
 
 
 def test_a_shift_can_be_given_and_must_overlap(log: Log, trace: Trace) -> None:

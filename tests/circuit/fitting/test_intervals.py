@@ -15,10 +15,11 @@ from thermicon.circuit.delivery.ways import deliver
 from thermicon.circuit.fitting.identify import FittedParameter, cures, identified
 from thermicon.circuit.fitting.keys import COMMON, CONTACT, free_keys
 from thermicon.circuit.fitting.log import Log, read_log
+from thermicon.circuit.fitting.overlay import aligned
 from thermicon.circuit.fitting.problem import LAYER_KINDS, FitProblem, changed_layers
 from thermicon.circuit.fitting.rig_fit import RigFit
 from thermicon.circuit.fitting.runs import runs_of
-from thermicon.circuit.fitting.solve import Solution, spreads
+from thermicon.circuit.fitting.solve import Solution, covariance_of, inverse_of, spreads
 from thermicon.circuit.fitting.synthetic_log import calibration_icon, plan, synthetic_log
 from thermicon.circuit.rig.rig import rig_names
 
@@ -47,6 +48,30 @@ def test_the_fitted_rig_has_the_skin_that_was_logged(foreign: RigFit, true_rig: 
     difference = mine.display_C - theirs.display_C
     assert np.abs(difference - difference.mean()).max() < 0.01
     assert "fitted along" in foreign.rig_text("mine")
+
+
+@pytest.mark.parametrize("times", [1, 100, 1_000_000])
+def test_rows_tell_nothing_of_a_key_that_they_do_not_depend_on(times: int, thenar: Rig, log: Log) -> None:
+    """So many times the rows, beside a second logger, on whose clock all of them tell most."""
+    names = ("time_s", "display_C"), ("time_s", "current_A", "voltage_V")
+    columns = {"time_s": log.time_s, **dict(log.columns)}
+    second, first = (Log.of("a.csv", {name: columns[name] for name in some}) for some in names)
+    keys = free_keys(["module.seebeck_V_per_K", "driver.transconductance_A_per_V"], thenar)
+    problem = FitProblem.of(thenar, keys, aligned(thenar, runs_of([first, second])))
+    sigma = [0.02 if channel.temperature else 0.005 for _, _, channel in problem.channels()]
+    jacobian, rows = problem.jacobian(problem.first, sigma), sum(len(each.values) for _, _, each in problem.channels())
+    jacobian[:rows] *= math.sqrt(times)
+    seebeck, driver = np.sqrt(np.diag(covariance_of(problem, jacobian, [1.0] * len(sigma))))[:2]
+    assert seebeck < 0.01 / math.sqrt(times)
+    assert driver == pytest.approx(0.5 * (problem.unknowns[1].high - problem.unknowns[1].low), rel=1e-6)
+
+
+def test_information_is_inverted_in_the_units_of_each_number() -> None:
+    size = np.array([1e-9, 1.0, 1e12])
+    alike = np.array([[1.0, 0.5, 0.0], [0.5, 1.0, 0.2], [0.0, 0.2, 1.0]])
+    found = inverse_of(alike * np.outer(size, size))
+    np.testing.assert_allclose(found * np.outer(size, size), np.linalg.inv(alike), rtol=1e-9, atol=1e-12)
+    assert np.array_equal(inverse_of(np.diag([4.0, 0.0])), np.diag([0.25, 0.0]))  # nothing is known of the second
 
 
 def test_fixed_skin_is_what_the_rig_has(true_rig: Rig, thenar: Rig) -> None:

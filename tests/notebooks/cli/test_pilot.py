@@ -5,10 +5,12 @@ import shlex
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.notebooks.conftest import Cli
 from thermicon.perception.observer.draws import PosteriorDraws
+from thermicon.perception.pilot.conditioning import MeasuredValues, Namings
 
 QUICK = ("--draws", 24)
 VALUES = """participant,kind,method,channel,size_K,value,unit,standard_error,trials
@@ -124,6 +126,37 @@ def test_a_sealed_prediction_is_scored_beside_its_cue_file(cli: Cli, two: Path, 
         [two, sealed, "--answers", answers, "--keep", "l.toml"],
     ):
         assert "sealed prediction" in cli("pilot", *wrong).stderr
+
+
+def test_answers_without_a_likelihood_are_given_alone(
+    cli: Cli, two: Path, answers: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def singular(*_: object) -> None:
+        raise np.linalg.LinAlgError
+
+    out, lab, figure = (tmp_path / name for name in ("out.json", "lab.toml", "figure.svg"))
+    monkeypatch.setattr(Namings, "log_likelihood", singular)
+    words = told(
+        cli("pilot", two, "--answers", answers, *QUICK, "--json", out, "--figure", figure),
+        *("two.cue felt & named ", "Test of fit (posterior predictive): p = "),
+        "The likelihood of the answers cannot be used: the covariance matrix of the data cannot be factorised. The "
+        "prediction is not sharpened by them, and the answers alone are given: 95 % named, 95 % interval 75–100 %. "
+        "Check the table for numbers that cannot be, or use more draws, or another seed.",
+    )
+    assert not [word for word in ("after", "effective", "--keep", "Traceback") if word in words]
+    assert json.loads(out.read_text(encoding="utf-8"))["unusable"] in words and figure.exists()
+    said = cli("pilot", two, "--answers", answers, *QUICK, "--keep", lab)
+    assert (said.exit_code, lab.exists()) == (1, False)
+    assert f"{lab} is not written: there are no draws of this laboratory" in said.stderr
+    assert "the answers alone are given" in " ".join(said.stdout.split())
+    path = tmp_path / "v.csv"
+    path.write_text(VALUES, encoding="utf-8")
+    monkeypatch.setattr(MeasuredValues, "log_likelihood", singular)
+    told(
+        cli("pilot", two, "--measurements", path, *QUICK),
+        *("condition people measured predicted 95 % ──", "The likelihood of the values cannot be used"),
+        "the values alone are given: cold, limits, 1 K/s: 1.79 K; ",
+    )
 
 
 def test_enough_draws_say_by_how_much_it_narrowed(cli: Cli, two: Path, answers: Path) -> None:

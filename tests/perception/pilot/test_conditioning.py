@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from tests.builders import weighted_quantile
-from thermicon.perception.pilot import conditioning
+from thermicon.perception.pilot import conditioning, likelihood
 from thermicon.perception.pilot.conditioning import Namings, condition, systematic
 from thermicon.perception.pilot.laboratory_file import off_middle
 from thermicon.perception.pilot.likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights
 from thermicon.perception.pilot.playing import Confusions
-from thermicon.perception.pilot.prediction import changed, compare, median_three, three
+from thermicon.perception.pilot.prediction import changed, compare, median_three, share_as_far, three
 from thermicon.perception.pilot.states import Laboratories
 from thermicon.perception.pilot.trials import Trials
 
@@ -31,8 +31,7 @@ class Toy:
         person = np.stack([np.random.default_rng(int(seed)).standard_normal(PEOPLE) for seed in some.seed])
         right = correct_at(some.place[:, :1], person)[:, :, None, None]
         chance = np.where(np.eye(ICONS, dtype=bool), right, (1.0 - right) / (ICONS - 1))
-        felt = np.broadcast_to(np.float32(0.9), chance.shape[:3])
-        return Confusions(("a", "b", "c"), chance.astype(np.float32), felt)
+        return Confusions(("a", "b", "c"), chance, np.full(chance.shape[:3], 0.9))
 
 
 def laboratories(n: int, seed: int) -> Laboratories:
@@ -83,6 +82,66 @@ def test_both_ways_agree_with_integration(participants: int, times: int, rounds:
     assert not set(found.after.seed.tolist()) & set(found.before.seed.tolist())
 
 
+@pytest.mark.parametrize(
+    ("participants", "times"), [(80, 40), (80, 40_000), (80, 40_000_000), (800, 40), (800, 40_000)]
+)
+def test_however_many_answers_there_are_the_laboratory_is_found(participants: int, times: int) -> None:
+    """More trials of the same people tell hardly more, more people do."""
+    found = condition(answered(answers(0.8, participants, times, seed=4)), laboratories(300, 1), seed=2)
+    sample = found.after.place[:, 0]
+    assert (found.unusable, found.rounds, found.effective_after) == ("", 2, 150.0)
+    assert abs(sample.mean() - 0.8) < 0.25
+    assert 0.02 < sample.std() < (0.2 if participants == 80 else 0.12)
+
+
+@pytest.mark.parametrize(("times", "near", "least"), [(1, 0.5, 0.0015), (1000, 0.447, 0.0015), (1e-3, 1.0, 0.9)])
+def test_laboratories_far_from_many_answers_keep_a_weight_and_from_few_the_same(
+    times: float, near: float, least: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of laboratories that are up to 50 less likely in ln L, or so many times that."""
+    given: list[np.ndarray] = []
+    monkeypatch.setattr(conditioning.PooledLikelihood, "fit", lambda *arguments: given.append(arguments[-1]))
+    some = laboratories(101, 1)
+    answered(answers(0.8, 4, 10, seed=4)).polynomial(
+        some.place, Toy().confusions(some), times * np.linspace(0.0, 50.0, 101)
+    )
+    assert given[0][4] == pytest.approx(near, rel=0.01)  # 2 in ln L
+    assert given[0][90] >= least
+
+
+@pytest.mark.parametrize("times", [1, 1000, 10_000_000])
+def test_the_least_variance_of_a_cell_decides_nothing(times: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    some, grid = laboratories(200, 3), laboratories(50, 5).place
+    counts, played = times * answers(0.8, 20, 20, seed=4), Toy().confusions(some)
+    rounded = replace(played, probability=played.probability.astype(np.float32))
+    expected = PooledLikelihood.fit(some.place, played, counts)(grid)
+    assert np.ptp(expected) > 3.0
+    monkeypatch.setattr(likelihood, "RIDGE", 10.0 * likelihood.RIDGE)
+    for each in (played, rounded):
+        found = PooledLikelihood.fit(some.place, each, counts)(grid)
+        np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("ridge", "chance", "why"), [(-1.0, 1.0, "cannot be factorised"), (1e-9, np.nan, "is not a finite number")]
+)
+def test_a_likelihood_that_cannot_be_computed_is_said(
+    ridge: float, chance: float, why: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(likelihood, "RIDGE", ridge)
+    monkeypatch.setattr(conditioning, "log_likelihoods", lambda *given: chance * log_likelihoods(*given))
+    found = condition(answered(answers(0.8, 80, 40, seed=4)), laboratories(300, 1), seed=2)
+    assert why in found.unusable
+    assert (len(found.before), len(found.after), found.effective_after) == (300, 0, 0.0)
+
+
+def test_as_far_is_as_far_but_for_rounding_whatever_the_size() -> None:
+    for size in (1e-9, 1.0, 1e12):
+        assert share_as_far([size * 0.3, size * (0.1 + 0.2), size * (0.2 + 0.1), size * 0.2]) == 0.75
+        assert share_as_far([size * (0.1 + 0.2), size * 0.3]) == 1.0
+        assert share_as_far([size, size * (1.0 - 1e-9)]) == 0.5
+
+
 def test_a_polynomial_that_fits_badly_still_covers() -> None:
     """Laboratories are of two kinds: no polynomial jumps, so that answers tell less than they could."""
     rng, some, grid = np.random.default_rng(6), laboratories(200, 3), laboratories(2000, 5).place
@@ -95,7 +154,7 @@ def test_a_polynomial_that_fits_badly_still_covers() -> None:
 
 
 def test_a_participant_is_a_mixture_over_people() -> None:
-    probability = np.array([[np.diag([0.8, 0.8]) + 0.1, np.diag([0.0, 0.0]) + 0.5]], dtype=np.float32)
+    probability = np.array([[np.diag([0.8, 0.8]) + 0.1, np.diag([0.0, 0.0]) + 0.5]])
     counts = np.array([[[3.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [1.0, 0.0]]])
     found = np.exp(log_likelihoods(probability, counts))[0]
     assert found == pytest.approx([(0.9**3 + 0.5**3) / 2, (0.1 + 0.5) / 2], rel=1e-5)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -15,14 +16,17 @@ from thermicon.base.numbers.cores import quiet_blas
 from thermicon.circuit import Rig
 from thermicon.icons import read_cue
 from thermicon.perception.experiments.measure import Setting
+from thermicon.perception.identification.new_laboratory import COVER
 from thermicon.perception.observer.draws import PosteriorDraws
-from thermicon.perception.pilot.conditioning import LEAST_EFFECTIVE, LEAST_SHARE
+from thermicon.perception.pilot.conditioning import LEAST_EFFECTIVE, LEAST_SHARE, Namings, condition
 from thermicon.perception.pilot.likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import log_likelihood, predicted
-from thermicon.perception.pilot.playing import stage
+from thermicon.perception.pilot.playing import Confusions, stage
 from thermicon.perception.pilot.states import SEEDS, Laboratories, LaboratoryPrior
+from thermicon.perception.pilot.trials import Trials
 
 ENDS = (0.025, 0.975)
+PILOTS = int(os.environ.get("THERMICON_PILOTS", "40"))
 RIG = Rig.load("thenar")
 Floats = NDArray[np.float64]
 
@@ -103,6 +107,38 @@ def test_intervals_cover_two_hundred_laboratories_and_twenty_trials_narrow_a_lit
     assert 1.02 <= one[2][0] <= 1.12  # docs/how-to/your-pilot.md says 1.06
     assert 1.12 <= four[2][0] <= 1.3
     assert four[0] > 150
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("odds_sd", [0.0, 1.0])
+def test_large_pilots_are_conditioned_on_whether_or_not_pairs_are_as_predicted(odds_sd: float) -> None:
+    """Forty people with 192 trials each; the odds of each confusion differ from the model by so much (SD of ln)."""
+    bench = Bench.of(300, min(PILOTS, 300), 12)
+    six = stage(read_cue("six-icons"), RIG, bench.prior)
+    simulated, true, left = (six.confusions(some) for some in (bench.some, bench.true, bench.other_people(bench.true)))
+
+    @dataclass(frozen=True)
+    class Known(Namings):
+        """The laboratories of the bench are simulated once for all pilots."""
+
+        def simulate(self, some: Laboratories, step: Callable[[], None] | None = None) -> Confusions:
+            return simulated if some is bench.some else super().simulate(some, step)
+
+    covered = []
+    for k in range(len(bench.own)):
+        odds = np.exp(odds_sd * np.triu(bench.rng.standard_normal((6, 6)), 1))
+        asked, others = (played.of(np.array([k])).probability * odds * odds.T for played in (true, left))
+        asked, others = asked / asked.sum(axis=-1, keepdims=True), others / others.sum(axis=-1, keepdims=True)
+        presented, who = np.full((40, 6), 32.0), bench.rng.integers(asked.shape[1], size=40)
+        counts = answers_of(Confusions(six.icons, asked, true.reported), who, presented, bench.rng)
+        trials = Trials(six.icons, tuple(f"P{number}" for number in range(40)), counts)
+        found = condition(Known(trials, six), bench.some, seed=k)
+        assert not found.unusable
+        low, high = np.percentile(found.simulated_after.correct, COVER)
+        assert 0.0 < low < high <= 1.0
+        covered.append(low <= np.trace(others, axis1=2, axis2=3).mean() / 6 <= high)
+    if not odds_sd:  # the pairs of other laboratories are not in the model yet
+        assert np.mean(covered) > 0.85 - 1.0 / len(covered)
 
 
 @pytest.mark.slow

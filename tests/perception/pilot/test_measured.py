@@ -69,6 +69,22 @@ def test_a_polynomial_is_as_likely_as_what_it_was_fitted_to_where_that_is_straig
     assert (Emulator.fit(some, place, each, np.ones(400))(place) - found).std() < 0.02 * found.std()
 
 
+@pytest.mark.parametrize("participants", [10, 10_000])
+def test_trials_of_which_none_is_felt_leave_the_rest_as_it_is(participants: int) -> None:
+    """They do not scatter: their SD is 0, of which there is no logarithm."""
+    chance = np.random.default_rng(3)
+    place, ones = chance.standard_normal((200, 3)), np.ones((participants, 2))
+    mean, between = place[:, :2], np.tile(0.04 * np.eye(2), (200, 1, 1))
+    some = Measurements(USUAL[:2], tuple(f"P{k}" for k in range(participants)), 1.5 * ones, np.nan * ones, 9.0 * ones)
+    silent, loud = (
+        Emulator.fit(some, place, SimulatedMeasurements(mean, between, np.tile([0.1, within], (200, 1))), np.ones(200))(
+            place
+        )
+        for within in (0.0, 1e-3)
+    )
+    np.testing.assert_allclose(silent - silent.max(), loud - loud.max(), rtol=1e-3)
+
+
 def test_forced_choice_agrees_with_the_rows_of_the_evidence(prior: LaboratoryPrior) -> None:
     person = prior.draws.observer(0)
     setting = Setting("thenar", person.contact_m2K_per_W, 9.0)

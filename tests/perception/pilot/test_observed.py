@@ -154,6 +154,24 @@ def test_thresholds_carry_the_offset_of_the_laboratory(found: Observed[Namings, 
     assert np.allclose(sorted(draws.values("warm threshold drive")), sorted(drive * np.exp(-offset)))
 
 
+def test_answers_without_a_likelihood_stand_alone(
+    icons: IconSet, rig: Rig, answers: Trials, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Namings, "log_likelihood", lambda _, simulated: np.full(len(simulated.probability), np.nan))
+    found = observed(answers, icons, rig, others=[icons], draws=20, seed=1)
+    low, high = found.data.pooled.named_interval or (0.0, 0.0)
+    assert f"{100 * low:.0f}–{100 * high:.0f} %" in found.unusable and found.unusable in repr(found)
+    own = found.to_dict()
+    assert (own["unusable"], own["fit_after"], own["constants"]) == (found.unusable, None, [])
+    assert [(each["after"], each["narrower"]) for each in own["predictions"]] == [(None, None)] * 2
+    assert own["fit_before"]["p"] > 0.0 and own["observed"]["named_interval"] == (low, high)
+    assert "NaN" not in found.to_json()
+    assert [row["data"] for row in found.rows()] == ["before", "before"]
+    assert len(found.plot().containers) == 1
+    with pytest.raises(ValueError, match=r"there are no draws of this laboratory\. The likelihood of the answers"):
+        found.files()
+
+
 def test_answers_to_another_set_and_too_few_draws_are_refused(icons: IconSet, rig: Rig, answers: Trials) -> None:
     other = Trials(("a", "b"), ("P1",), np.ones((1, 2, 2)))
     with pytest.raises(ValueError, match="the answers are to other icons than those of the set"):

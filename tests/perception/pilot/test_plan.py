@@ -17,7 +17,7 @@ from thermicon.perception.pilot.playing import Confusions
 def test_a_width_is_that_of_students_interval(trials: int) -> None:
     right = np.clip(0.5 + 0.05 * np.random.default_rng(0).standard_normal((1, 4000)), 0.0, 1.0)
     chance = np.stack([np.stack([right, 1 - right], -1), np.stack([1 - right, right], -1)], -2)
-    played = Confusions(("a", "b"), chance.astype(np.float32), np.ones(chance.shape[:3], np.float32))
+    played = Confusions(("a", "b"), chance, np.ones(chance.shape[:3]))
     design = _simulated([played], 10, trials, np.random.SeedSequence(1))
     # 2 t(0.975, 9) c4(10) SD / sqrt(10), of people and of what so many trials leave.
     left = math.hypot(0.05, 0.5 / trials**0.5)
