@@ -113,15 +113,11 @@ def test_limits_suffice_where_the_display_follows_its_set_points_as_well_as_with
     def off_K(most_A: float) -> float:
         return float(np.sqrt(np.mean((display_C(most_A) - display_C(2.0)) ** 2)))
 
-    enough_A = next(
-        step / 100 for step in range(5, 200) if loops.suffices((-step / 100, step / 100), [samples], [shown_C])
-    )
-    assert 0.3 < enough_A < 0.6
+    tried_A = np.arange(0.3, 0.6, 0.01)
+    enough_A = next(most_A for most_A in tried_A if loops.suffices((-most_A, most_A), [samples], [shown_C]))
     assert off_K(enough_A + 0.02) < LOSS_K < off_K(enough_A - 0.02)
-    slow_A, _ = loops.limits_A(CUT, [samples])
-    assert slow_A[0] == -slow_A[1] == slowed(SURE)[0] < -enough_A, (
-        "alike for both signs, as these set-points need no more"
-    )
+    low_A, high_A = loops.limits_A(CUT, [samples])[0]
+    assert low_A == -high_A == slowed(SURE)[0], "alike for both signs, as these set-points need no more"
 
 
 def test_a_display_held_beyond_the_second_cut_off_has_changed_the_skin_until_that_acts() -> None:

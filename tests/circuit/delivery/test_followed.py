@@ -1,16 +1,12 @@
-"""The controlled module that replays set-points, against exact steps or the gate."""
+"""The controlled module that replays set-points, against exact steps."""
 
 import json
-from typing import Any
 
 import numpy as np
 import pytest
 
 from tests.circuit.delivery.followed import Follower
-from tests.circuit.delivery.one_drive import icon_of, prepare
-from tests.circuit.delivery.replay import RATE_K_PER_S, Worst
-from thermicon.circuit import Device, Rig
-from thermicon.circuit.delivery.formats import load_format
+from thermicon.circuit import Rig
 
 SMALL = Rig.load("thenar").with_(**{
     "skin.elements": [1] * 5, "driver.update_Hz": 20.0, "module.hot_plate_J_per_K": 1.5,
@@ -40,24 +36,3 @@ def test_the_display_is_at_its_set_point_at_the_end_of_an_update() -> None:
         assert rows[-1, :, 2] == pytest.approx(np.full(len(state), level), abs=1e-4)
     rows, _ = module.follow(np.array([40.0]), state)
     assert rows[-1, :, 2].max() < 34.0, "at the driver's limit it takes longer"
-
-
-def test_a_relay_between_the_cut_offs_moves_skin_as_fast_as_the_gate_allows_any_loop() -> None:
-    """At the demanded limits, in the independent circuit; without them, as its file says, much faster."""
-    icon = icon_of("warm by 2 °C at 1 °C/s")
-    rig = SMALL.with_(**{"driver.current_limit_A": 1.5, "driver.voltage_limit_V": 60.0})
-    verdict = prepare(icon, rig, Device.load("closed-loop-controller"), load_format("setpoint-csv")).verdict
-    assert verdict.colour != "red", verdict.reason
-    demands: dict[str, Any] = verdict.demanded
-    cut, module = demands["cut_off_display_C"], Follower(json.loads(rig.document), np.random.default_rng(1))
-    levels = np.repeat([cut["low"], cut["high"]] * 4, [60, 60, 20, 20, 6, 6, 2, 2])
-
-    def fastest() -> float:
-        worst = Worst()
-        rows, _ = module.follow(levels, module.rest(cut["high"]))
-        worst.rates(rows, np.full(len(rows) - 1, module.row_s))
-        return float((1 + worst.beyond["rate"]) * RATE_K_PER_S)
-
-    assert fastest() > 15.0
-    module.least_A, module.most_A = (limit * module.circuit.gain for limit in demands["current_limit_A"])
-    assert 6.0 < fastest() < RATE_K_PER_S
