@@ -14,7 +14,7 @@ from thermicon.base.files.inputs import read_bytes
 from thermicon.base.files.read_limited import NotRegular, TooLarge, read_limited
 
 from .outputs import check_output
-from .versions import Version, Versions
+from .recovery import RecoveryFile, UnsavedText
 
 MOST_BYTES = 4_000_000
 """Bytes of a file that is opened for editing; the editor takes a million letters."""
@@ -23,7 +23,7 @@ MERGED_S = 0.8
 """Typing goes on as one step while the pauses are shorter than this."""
 Kind = Literal["typing", "drag", "other"]
 GOAL = re.compile(r"^# goal:[ \t]*(.*?)[ \t]*(?:\n|\Z)", re.MULTILINE)
-"""The line of a text that holds its goal: a comment, so that file and versions keep it."""
+"""The line of a text that holds its goal: a comment, so that the file keeps it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,8 +84,8 @@ class Document:
     """A text and all that is known of it; verbs raise OutputError with a sentence.
 
     ``path`` is its file, None where it has none yet; ``saved`` is the text there; ``history`` holds the text as it is
-    now with the steps before and after it; ``versions`` holds texts that were kept. ``keeps`` says whether these, and
-    unsaved text, are kept beside the file: where a kernel serves a page.
+    now with the steps before and after it; ``recovery`` holds unsaved text, which ``keeps`` writes beside the file:
+    where a kernel serves a page.
     """
 
     def __init__(self, text: str, name: str = "icons", keeps: bool = False, path: Path | None = None) -> None:
@@ -97,7 +97,7 @@ class Document:
         self._overwrites = self._crlf = False
         self._stamp: str | None = None
         self._seen: tuple[object, bool] | None = None
-        self.versions = self._versions()
+        self.recovery = self._recovery()
 
     @classmethod
     def open(cls, path: Path, keeps: bool = False) -> Document:
@@ -162,40 +162,29 @@ class Document:
             cure = "open it again to see it, or save your text under another name"
             cure = "Save as writes your text to a file again" if gone else cure
             return f"{self.name} {happened} on disk since it was opened here: {cure}"
-        return "" if self.versions.failed is None else f"unsaved text is not kept: {self.versions.failed}"
+        return "" if self.recovery.failed is None else f"unsaved text is not kept: {self.recovery.failed}"
 
     def changed(self) -> None:
         """Keep the text as it is now until it is saved; called after each change of it."""
         self._overwrites = False
-        self.versions.typed(self.text if self.dirty else None, self.history.now.icon)
+        self.recovery.typed(self.text if self.dirty else None, self.history.now.icon)
 
     def leave(self) -> None:
         """Write what is unsaved, before another document takes its place; OutputError where it would be lost."""
         if self.dirty:
-            self.versions.keep()
-            if self.versions.path is None or self.versions.failed is not None:
+            self.recovery.keep()
+            if self.recovery.path is None or self.recovery.failed is not None:
                 raise OutputError(f"{self.title}: save it first, or undo the changes; nothing was opened")
 
-    def keep(self) -> Version:
-        """Keep the text as it is now as a version."""
-        made = Version(self.text, time.time(), self.history.now.icon)
-        self.versions.keep(made)
-        return made
-
     def left(self, text: str) -> None:
-        """Take what an editor that is gone left elsewhere as a version, unless it is known."""
-        if text not in (self.text, *(each.text for each in self.versions.others)):
-            self.versions.keep(Version(text, time.time(), None, "page"))
+        """Take what an editor that is gone left elsewhere as unsaved text, unless it is known."""
+        if text not in (self.text, *(each.text for each in self.recovery.others)):
+            self.recovery.keep(UnsavedText(text, time.time(), None, "page"))
 
     @property
-    def offer(self) -> Version | None:
-        """The newest text that another editor of the file left unsaved after the file was written; None for none."""
-        try:
-            saved_s = 0.0 if self.path is None else self.path.stat().st_mtime
-        except OSError:
-            saved_s = 0.0
-        left = [each for each in self.versions.others if each.editor and each.text != self.text]
-        return left[-1] if left and left[-1].at_s > saved_s else None
+    def offer(self) -> UnsavedText | None:
+        """The newest text that another editor of the file left unsaved; None for none."""
+        return next((text for text in reversed(self.recovery.others) if text.editor and text.text != self.text), None)
 
     def save(self) -> Path:
         """Save to the file it came from; pressed twice, over a file that has changed in between too."""
@@ -211,16 +200,14 @@ class Document:
         return self._write(self.path, self._crlf)
 
     def save_as(self, path: Path, overwrite: bool = False) -> Path:
-        """Save to another file, which is that of the text from now on; versions kept by hand go along."""
+        """Save to another file, which is that of the text from now on."""
         check_output(path, (".cue",), "cue text")
         if path.exists() and not overwrite:
             raise OutputError(f"{path} already exists and was kept: give another name, or tick overwrite")
-        before = self.versions
+        before = self.recovery
         self._write(path, crlf=False)
-        if before is not self.versions:
+        if before is not self.recovery:
             before.typed(None, None)
-            if by_hand := tuple(each for each in before.others if not each.editor):
-                self.versions.keep(*by_hand)
         return path
 
     def _write(self, path: Path, crlf: bool) -> Path:
@@ -232,12 +219,12 @@ class Document:
         moved = path != self.path
         self.path, self.name, self.saved, self._stamp, self._crlf = path, path.name, text, _stamp(data), crlf
         if moved:
-            self.versions = self._versions()
+            self.recovery = self._recovery()
         self.changed()
         return path
 
-    def _versions(self) -> Versions:
-        return Versions((self.path or self.folder / f"{Path(self.name).stem}.cue") if self.keeps else None)
+    def _recovery(self) -> RecoveryFile:
+        return RecoveryFile((self.path or self.folder / f"{Path(self.name).stem}.cue") if self.keeps else None)
 
     def _changed_on_disk(self) -> bool:
         """Whether the file is another now: read again only when its time, size or place differ, as every frame asks."""

@@ -16,7 +16,7 @@ from thermicon.icons import Icon, IconSet, load_library, read_cue
 from thermicon.icons.files.shipped import library_names
 
 from ..files.document import Document
-from ..files.versions import Version
+from ..files.recovery import UnsavedText
 from ..report.blocks import fragment
 from ..timeline.frames import WORDS
 from .live_view import button, safely
@@ -66,7 +66,7 @@ class DocumentBar:
         self._panels["help"] = widgets.VBox([widgets.HTML(fragment("points", WORDS["sheet"]))])
         self.panel = widgets.VBox([]).add_class("thermicon-panel")
         self.shown: str | None = None
-        self.offered_text: Version | None = None
+        self.offered_text: UnsavedText | None = None
         self.offered = widgets.HTML()
         yes = self._button("Restore it", "as a step that can be undone", self._restore)
         no = self._button("Discard", "drop what was not saved", self.discard)
@@ -121,9 +121,9 @@ class DocumentBar:
         self._show_offer()
 
     def discard(self) -> None:
-        """Drop the text that is offered; others stand among the versions."""
+        """Drop the text that is offered; others are offered at the next start."""
         if self.offered_text is not None:
-            self.document.versions.drop(self.offered_text)
+            self.document.recovery.drop(self.offered_text)
         self.offered_text = None
         self.offer.layout.display = "none"
 
@@ -154,6 +154,12 @@ class DocumentBar:
         if found is not None:
             words = f"Unsaved text of {self.document.name} was typed {found.age}:"
             self.offered.value = fragment("marked", words, "")
+        self._safely(self._write_versions)
+
+    def _write_versions(self) -> None:
+        """Hand over the versions that an earlier release kept by hand."""
+        if (folder := self.document.recovery.write_versions()) is not None:
+            self.say(f"versions of {self.document.name} that were kept by hand are cue files now, in {folder}")
 
     def _restore(self) -> None:
         if (found := self.offered_text) is not None:
@@ -172,8 +178,8 @@ class DocumentBar:
             self.design.open(Document.open(self.document.place(source), self.document.keeps))
         self.path.value = self.name.value = ""
         self._offer_rigs()
-        self._show_offer()
         self._after("")
+        self._show_offer()
 
     def _save_as(self) -> None:
         if not (wanted := self.name.value.strip()):

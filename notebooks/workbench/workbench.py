@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from .export_view import ExportView
     from .set_strip import SetStrip
     from .set_view import SetView
-    from .versions_view import VersionsView
 
 View = Literal["design", "set", "export"]
 VIEWS: tuple[View, ...] = ("design", "set", "export")
@@ -107,7 +106,6 @@ class Workbench:
         self.set_strip: SetStrip | None = None
         self.set_view: SetView | None = None
         self.export_view: ExportView | None = None
-        self.versions_view: VersionsView | None = None
         self.bar: DocumentBar | None = None
 
     @property
@@ -123,7 +121,7 @@ class Workbench:
 
     @property
     def document(self) -> Document:
-        """The text with its file, undo, versions, and what is unsaved of it."""
+        """The text with its file, undo, and what is unsaved of it."""
         return self._design.document
 
     @property
@@ -210,25 +208,23 @@ class Workbench:
         from .export_view import ExportView
         from .set_strip import SetStrip
         from .set_view import SetView
-        from .versions_view import VersionsView
 
         sheet = (files("thermicon.notebooks") / "workbench.css").read_text(encoding="utf-8")
         style = widgets.HTML(f"<style>{sheet}</style>").add_class("thermicon-style")
         self.design_view = design = DesignView(self._design)
 
-        def show_text(text: str, icon: str | None = None) -> None:
-            design.send(self._design.show_text(text, icon))
+        def show_text(text: str) -> None:
+            design.send(self._design.show_text(text))
 
         self.set_strip = strip = SetStrip(self._design, design.canvas.send)
         self.set_view = ranked = SetView(self._design, show_text, strip.known)
         self.export_view = export = ExportView(self._design, self._folder)
         self.bar = bar = DocumentBar(design)
-        self.versions_view = versions = VersionsView(self._design, show_text)
         design.on_page = {"save": bar.saved_by_key, "left": bar.take_left, "hello": lambda _: strip.tell(anew=True)}
-        views = [design.box, ranked.box, export.box, versions.box]
-        tabs = widgets.Tab(views, titles=("Design", "Set", "Export", "Versions"))
+        views = [design.box, ranked.box, export.box]
+        tabs = widgets.Tab(views, titles=("Design", "Set", "Export"))
 
-        live: tuple[SetStrip | SetView | ExportView | VersionsView, ...] = (strip, ranked, export, versions)
+        live: tuple[SetStrip | SetView | ExportView, ...] = (strip, ranked, export)
 
         for part in (*ranked.stale_parts, *export.stale_parts):
             part.add_class("thermicon-judged")  # pale where the page itself knows that it is older than the text

@@ -9,7 +9,7 @@ from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, expect
 
 from tests.browser.jupyter import dark
-from tests.browser.onbench import TWO, open_tab, type_text, wait_until_refined
+from tests.browser.onbench import open_tab, type_text, wait_until_refined
 from tests.browser.staticpage import open_bench
 
 RULES = {"runOnly": {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]}}
@@ -50,13 +50,6 @@ def test_no_view_of_the_workbench_has_a_serious_finding(bench: Page, scheme: str
     page.get_by_label("icons", exact=True).select_option("the selected icon")  # six take longer to judge
     expect(page.locator(".thermicon-export")).to_contain_text("ready to be written", timeout=30_000)
     wrong["export"] = findings(page)
-    open_tab(page, "Versions")
-    page.get_by_role("button", name="Keep this version").click()
-    open_tab(page, "Design")
-    type_text(page, TWO)
-    open_tab(page, "Versions")
-    expect(page.locator(".thermicon-versions .changes")).to_be_visible()
-    wrong["versions"] = findings(page)
     open_tab(page, "Design")
     page.locator(".tm-words summary").first.click()
     wrong["words"] = findings(page, ".tm-timeline")

@@ -10,7 +10,7 @@ import pytest
 
 from thermicon.base.files.atomic import OutputError
 from thermicon.notebooks.files.document import MOST_STEPS, Document, History, HistoryStep
-from thermicon.notebooks.files.versions import EVERY_S, MOST, MOST_LETTERS, Version, Versions
+from thermicon.notebooks.files.recovery import EVERY_S, MOST, MOST_LETTERS, RecoveryFile, UnsavedText
 
 
 def typed(document: Document, text: str) -> Document:
@@ -68,7 +68,7 @@ def test_files_that_cannot_be_are_told(tmp_path: Path) -> None:
 
 
 def test_unsaved_text_is_kept_at_once_then_twice_a_second(tmp_path: Path) -> None:
-    kept, seen = Versions(tmp_path / "a.cue"), Versions(tmp_path / "a.cue")
+    kept, seen = RecoveryFile(tmp_path / "a.cue"), RecoveryFile(tmp_path / "a.cue")
     kept.typed("one", "dip")
     assert [(each.text, each.icon) for each in seen.others] == [("one", "dip")]
     assert kept.others == ()
@@ -83,7 +83,7 @@ def test_unsaved_text_is_kept_at_once_then_twice_a_second(tmp_path: Path) -> Non
     assert list(tmp_path.iterdir()) == []
 
 
-def test_text_of_a_killed_process_is_offered_as_long_as_it_is_newer(tmp_path: Path) -> None:
+def test_text_of_a_killed_process_is_offered_until_it_is_dropped(tmp_path: Path) -> None:
     path = tmp_path / "a.cue"
     path.write_text("cue 1", encoding="utf-8")
     code = (
@@ -97,8 +97,11 @@ def test_text_of_a_killed_process_is_offered_as_long_as_it_is_newer(tmp_path: Pa
     assert (document.offer.text, document.offer.age) == ("cue 1 # typed", "a moment ago")
     assert document.text == "cue 1"
     os.utime(path, (time.time() + 60,) * 2)
-    assert document.offer is None
-    assert [each.text for each in document.versions.others] == ["cue 1 # typed"]
+    again = Document.open(path, keeps=True)
+    assert again.offer == document.offer
+    again.recovery.drop(again.offer)
+    assert again.offer is None
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_two_editors_of_one_file_keep_their_texts_side_by_side(tmp_path: Path) -> None:
@@ -106,64 +109,63 @@ def test_two_editors_of_one_file_keep_their_texts_side_by_side(tmp_path: Path) -
     first, second = Document.open(path, keeps=True), Document.open(path, keeps=True)
     typed(first, "cue 1 # first")
     typed(second, "cue 1 # second")
-    second.keep()
     time.sleep(EVERY_S + 0.1)
     typed(first, "cue 1 # first, again")
     third = Document.open(path, keeps=True)
-    assert sorted((each.text, bool(each.editor)) for each in third.versions.others) == [
-        ("cue 1 # first, again", True), ("cue 1 # second", False), ("cue 1 # second", True),
-    ]  # fmt: skip
+    assert sorted(unsaved.text for unsaved in third.recovery.others) == ["cue 1 # first, again", "cue 1 # second"]
     first.save()
-    assert [each.text for each in third.versions.others] == ["cue 1 # second"] * 2
+    assert [unsaved.text for unsaved in third.recovery.others] == ["cue 1 # second"]
 
 
-def test_versions_kept_by_hand_stay_until_they_are_dropped_and_go_along(tmp_path: Path) -> None:
-    document = Document.open(Document("cue 1").save_as(tmp_path / "a.cue"), keeps=True)
-    made = document.keep()
-    typed(document, "cue 1 # more").save()
-    assert Document.open(tmp_path / "a.cue", keeps=True).versions.others == (made,)
-    assert document.offer is None
-    document.save_as(tmp_path / "b.cue")
-    assert document.versions.others == (made,)
-    document.versions.drop(made)
-    assert sorted(each.name for each in tmp_path.iterdir()) == [".a.cue.unsaved", "a.cue", "b.cue"]
+def test_versions_that_were_kept_by_hand_become_files_and_none_is_lost(tmp_path: Path) -> None:
+    by_hand = [UnsavedText(f"cue 1 # {number}", 1e9 + number / 10, "dip") for number in (1, 2)]
+    recovery, folder = RecoveryFile(tmp_path / "a.cue"), tmp_path / "a-versions"
+    recovery.keep(*by_hand, UnsavedText("cue 1 # unsaved", 2e9, None, "page"))
+    folder.write_text("in the way")
+    with pytest.raises(OutputError, match="a-versions: it is a file"):
+        recovery.write_versions()
+    assert [unsaved.text for unsaved in recovery.others] == ["cue 1 # 1", "cue 1 # 2", "cue 1 # unsaved"]
+    folder.unlink()
+    assert recovery.write_versions() == folder
+    assert sorted(path.read_text() for path in folder.glob("*.cue")) == ["cue 1 # 1", "cue 1 # 2"]
+    assert [unsaved.text for unsaved in recovery.others] == ["cue 1 # unsaved"]
+    assert recovery.write_versions() is None
 
 
 def test_the_oldest_versions_make_room(tmp_path: Path) -> None:
-    kept = Versions(tmp_path / "a.cue")
-    kept.keep(*(Version(str(k), float(k)) for k in range(MOST + 5)))
+    kept = RecoveryFile(tmp_path / "a.cue")
+    kept.keep(*(UnsavedText(str(k), float(k)) for k in range(MOST + 5)))
     assert [each.text for each in kept.others] == [str(k) for k in range(5, MOST + 5)]
-    kept.keep(Version("x" * (MOST_LETTERS - 1), 1e9))
+    kept.keep(UnsavedText("x" * (MOST_LETTERS - 1), 1e9))
     assert [each.text[:2] for each in kept.others] == ["xx"]
 
 
 @pytest.mark.parametrize("held", ["typed by hand", '[{"text": 1}]', "[1", '[{"text": "a", "at_s": 1e300}]'])
 def test_a_file_of_another_form_is_offered_as_it_is(tmp_path: Path, held: str) -> None:
     (tmp_path / ".a.cue.unsaved").write_text(held, encoding="utf-8")
-    (found,) = Versions(tmp_path / "a.cue").others
+    (found,) = RecoveryFile(tmp_path / "a.cue").others
     assert found.text == held
     (tmp_path / ".a.cue.unsaved").write_text('[{"text": "B", "at_s": 1.0, "theme": "dark"}]', encoding="utf-8")
-    assert Versions(tmp_path / "a.cue").others == (Version("B", 1.0),)
+    assert RecoveryFile(tmp_path / "a.cue").others == (UnsavedText("B", 1.0),)
 
 
-def test_a_folder_that_takes_nothing_is_told_and_versions_stay_in_memory(tmp_path: Path) -> None:
-    kept = Versions(tmp_path / "gone" / "a.cue")
+def test_a_folder_that_takes_nothing_is_told_and_texts_stay_in_memory(tmp_path: Path) -> None:
+    kept = RecoveryFile(tmp_path / "gone" / "a.cue")
     kept.typed("text", None)
     assert kept.failed is not None
     assert "cannot write" in kept.failed
-    kept.keep(Version("kept", 1.0))
+    kept.keep(UnsavedText("kept", 1.0))
     assert [each.text for each in kept.others] == ["kept"]
 
 
 def test_what_is_not_kept_on_disk_is_kept_in_memory(tmp_path: Path) -> None:
     document = Document("cue 1")
-    made = document.keep()
+    document.left("cue 1 # of the page")
+    left = document.offer
     with pytest.raises(OutputError, match=r"icons .not saved to a file.: save it first, or undo the changes"):
         typed(document, "cue 2").leave()
-    assert document.versions.others == (made,)
-    assert document.offer is None
+    assert document.recovery.others == (left,)
     document.save_as(tmp_path / "a.cue")
-    assert document.versions.others == (made,)
     assert [each.name for each in tmp_path.iterdir()] == ["a.cue"]
 
 

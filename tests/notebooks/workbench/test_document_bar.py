@@ -10,6 +10,7 @@ import pytest
 from tests.notebooks.workbench.openbench import TEXT, TYPED, opened, said, title
 from thermicon.base.files.atomic import OutputError
 from thermicon.circuit import Rig
+from thermicon.notebooks.files.recovery import UnsavedText
 from thermicon.notebooks.workbench.document_bar import DocumentBar
 
 
@@ -126,30 +127,42 @@ def test_what_the_page_kept_is_offered_before_what_the_kernel_wrote(path: Path) 
     canvas = bench.design_view.canvas
     for text in (TYPED, TEXT):
         canvas._receive(canvas, {"type": "left", "seq": 0, "text": text}, [])
-    assert [each.text for each in bench.document.versions.others] == [TYPED]
+    assert [each.text for each in bench.document.recovery.others] == [TYPED]
     canvas._receive(canvas, {"type": "left", "seq": 0, "text": TYPED + "# in the page\n"}, [])
     assert bar.offer.layout.display == ""
     bar._safely(bar._restore)
     assert bench.text == TYPED + "# in the page\n"
     assert bar.offer.layout.display == "none"
-    assert [each.text for each in bench.document.versions.others] == [TYPED]
+    assert [each.text for each in bench.document.recovery.others] == [TYPED]
 
 
-def test_opening_another_file_leaves_unsaved_text_and_versions_with_the_one_before(path: Path) -> None:
+def test_opening_another_file_leaves_unsaved_text_with_the_one_before(path: Path) -> None:
     bench, bar = opened(path)
-    kept = bench.document.keep()
     bench.text = TYPED
     open_file(bar, "shipped: six-icons")
-    assert bench.document.versions.others == ()
+    assert bench.document.recovery.others == ()
     open_file(bar, "alerts.cue")
     assert bench.text == TEXT
     assert bar.offer.layout.display == ""
-    assert kept in bench.document.versions.others
     third, bar = opened(path)
     third.document.left(TEXT + "# other\n")
     bar._safely(bar._restore)
     assert third.text == TYPED
-    assert TEXT + "# other\n" in [each.text for each in third.document.versions.others]
+    assert TEXT + "# other\n" in [each.text for each in third.document.recovery.others]
+
+
+def test_versions_that_were_kept_by_hand_are_handed_over_once_and_said(path: Path) -> None:
+    opened(path)[0].document.recovery.keep(UnsavedText(TYPED, 1e9))
+    bench, bar = opened(path)
+    assert "versions of alerts.cue that were kept by hand are cue files now, in " in said(bar)
+    (version,) = (path.parent / "alerts-versions").iterdir()
+    assert version.read_text(encoding="utf-8") == TYPED
+    assert [bench.text, bar.offer.layout.display] == [TEXT, "none"]
+    assert said(opened(path)[1]) == ""
+    opened(path)[0].document.recovery.keep(UnsavedText(TYPED + "# again\n", 1.1e9))
+    bench, bar = opened(None)
+    open_file(bar, str(path))
+    assert "are cue files now" in said(bar)
 
 
 def test_text_that_cannot_be_kept_anywhere_is_told_and_not_left(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
