@@ -39,8 +39,8 @@ from .temperatures import FollowingModule, rest_of_a_loop, updates_of
 
 SWINGS_S = (3.0, 3.0, 1.0, 1.0, 0.3, 0.3, 0.1, 0.1)
 """For how long a loop swings to the lower, then to the upper cut-off, and so on: it arrives, stays, or turns before."""
-STUCK_S = 1.0
-"""Within which a current at its limit moves the skin fastest: heat passes a contact and the stratum corneum sooner."""
+STUCK_S = 3.0
+"""Within which a current at its limit moves the skin fastest: by then the cut-off of the other side has acted."""
 ROOM = 0.97
 """Share of a limit that the worst of these swings may reach."""
 STEP_A, TRIES = 0.01, 12

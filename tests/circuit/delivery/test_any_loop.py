@@ -32,6 +32,12 @@ LAGGING = SURE.with_(**{
     "module.seebeck_V_per_K": 0.05852, "contact.area_cm2": 4.662, "contact.resistance_m2K_per_W": 0.001064,
 })  # fmt: skip
 """Where the skin is fastest when a loop goes to a limit and stays there, not when it swings."""
+SLUGGISH = SURE.with_(**{
+    "driver.current_limit_A": 2.84, "heat_sink.temperature_C": 33.0, "module.cold_plate_J_per_K": 1.99,
+    "module.hot_plate_J_per_K": 9.86, "contact.area_cm2": 3.365, "contact.resistance_m2K_per_W": 0.0035,
+})  # fmt: skip
+"""Where the skin is fastest only more than a second after a loop went from a far cut-off to a limit."""
+WIDE = CutOff(18.9, 43.0, 0.0)
 WRONG_K, LOSS_K = 0.3, 0.05
 """Offset of a sensor, and what a display may miss more than with the driver's own limits, rms."""
 
@@ -42,9 +48,9 @@ def loops_of(rig: Rig) -> AnyLoop:
 
 
 @cache
-def slowed(rig: Rig) -> Limits_A:
+def slowed(rig: Rig, cut: CutOff = CUT, given: Limits_A = (-2.0, 2.0)) -> Limits_A:
     """The limits to which those of the driver come down."""
-    return loops_of(rig).slowed(CUT, (-2.0, 2.0))[0]
+    return loops_of(rig).slowed(cut, given)[0]
 
 
 def limited(rig: Rig, limits_A: Limits_A) -> Follower:
@@ -54,14 +60,14 @@ def limited(rig: Rig, limits_A: Limits_A) -> Follower:
     return Follower({**document, "driver": driver}, np.random.default_rng(0), extra=0)
 
 
-def fastest(rig: Rig, limits_A: Limits_A) -> float:
+def fastest(rig: Rig, limits_A: Limits_A, cut: CutOff = CUT) -> float:
     """The skin in K/s under a relay between the cut-offs, and at a limit from the cut-off of the other side."""
     module = limited(rig, limits_A)
     unpowered = module._steady(np.zeros(len(module.least_A)))
-    courses = [module.follow(np.repeat([CUT.low, CUT.high] * 4, [60, 60, 20, 20, 6, 6, 2, 2]), unpowered)[0]]
-    for level_C, amperes in ((CUT.low - WRONG_K, module.least_A), (CUT.high + WRONG_K, module.most_A)):
+    courses = [module.follow(np.repeat([cut.low, cut.high] * 4, [60, 60, 20, 20, 6, 6, 2, 2]), unpowered)[0]]
+    for level_C, amperes in ((cut.low - WRONG_K, module.least_A), (cut.high + WRONG_K, module.most_A)):
         states = [module.rest(level_C)]
-        for _ in range(20):
+        for _ in range(60):
             states.extend(module.update(amperes, states[-1]))
         courses.append(module.circuit.read(np.array(states).transpose(1, 2, 0)).transpose(2, 0, 1))
     worst = Worst()
@@ -79,7 +85,10 @@ def test_within_slowed_limits_no_loop_is_too_fast_and_a_tenth_wider_on_either_si
     assert slowed(SURE)[1] == 2.0, "nor do they come down where they need not"
     low_A, high_A = slowed(LAGGING)
     assert fastest(LAGGING, (low_A, high_A)) <= 0.975 * RATE_K_PER_S
-    assert fastest(LAGGING, (1.1 * low_A, high_A)) > RATE_K_PER_S
+    assert fastest(LAGGING, (1.15 * low_A, high_A)) > RATE_K_PER_S
+    low_A, high_A = slowed(SLUGGISH, WIDE, (-2.84, 2.84))
+    assert fastest(SLUGGISH, (low_A, high_A), WIDE) <= 0.975 * RATE_K_PER_S
+    assert fastest(SLUGGISH, (1.2 * low_A, high_A), WIDE) > RATE_K_PER_S
 
 
 def test_swapped_wires_are_told_where_turned_limits_are_too_fast_and_only_there() -> None:
