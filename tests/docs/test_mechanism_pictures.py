@@ -45,7 +45,7 @@ def test_an_effect_is_drawn_with_every_curve_and_its_units(effect_of: dict[str, 
 
 def cold_is_felt_late_with_its_limit(limits: Effect) -> bool:
     cold, free = named(limits, "cold"), named(limits, "cold, limit off")
-    early = cold.x < 5.5
+    early = cold.x < 35.5
     return bool(cold.y[early].max() < 0.5 < free.y[early].max())
 
 

@@ -51,15 +51,15 @@ class Effect:
 
 def limits_effect() -> Effect:
     """A slow fall from 38 to 31 °C: cold with its limit and without, and warmth, which is what fades first."""
-    time, whole = _clock(12.0), Observer.load()
+    time, whole = _clock(42.0), Observer.load()
     free = replace(whole, limit_C=NO_LIMIT_C)
-    corners: list[Corner] = [(1.0, 0.0), (8.0, -7.0)]
+    corners: list[Corner] = [(2.0, 6.0), (30.0, 6.0), (37.0, -1.0)]
     curves = [
-        Curve("warm", "warm", time, _felt(corners, "warm", whole, time, baseline_C=38.0)),
-        Curve("cold", "cold", time, _felt(corners, "cold", whole, time, baseline_C=38.0)),
-        Curve("cold, limit off", "off", time, _felt(corners, "cold", free, time, baseline_C=38.0)),
+        Curve("warm", "warm", time, _felt(corners, "warm", whole, time)),
+        Curve("cold", "cold", time, _felt(corners, "cold", whole, time)),
+        Curve("cold, limit off", "off", time, _felt(corners, "cold", free, time)),
     ]
-    return Effect("A fall from 38 to 31 °C at 1 K/s (forearm)", "time (s)", "sensation (d′)", tuple(curves))
+    return Effect("Held at 38 °C, then a fall to 31 °C at 1 K/s (forearm)", "time (s)", "sensation (d′)", tuple(curves))
 
 
 def adaptation_effect() -> Effect:
