@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import inspect
 import shlex
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import Field, dataclass, fields, is_dataclass, replace
 from importlib import resources
 from pathlib import Path
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
     from thermicon.perception import Goal, Ranking
-    from thermicon.perception.observer.observer_model import ObserverModel
+    from thermicon.perception.observer.observer_model import Crowd, ObserverModel
 
 MOST_PEOPLE, MOST_DRAWS, LARGEST_SEED = 100_000, 10_000, 2**32 - 1
 LONGEST_TAIL_S = 86_400.0
@@ -193,12 +193,17 @@ class ObserverOptions(Options):
 
     @property
     def asked(self) -> dict[str, Any]:
-        """Arguments of functions that predict."""
+        """Words of the crowd."""
         return {"seed": self.seed, "tracking": self.tracking, "memory": self.memory}
 
-    def load(self, rig: Rig, needs_draws: str = "") -> ObserverModel:
-        """The observer; notes on stderr say what it cannot give. `needs_draws`: what cannot be done without draws."""
-        return load_observer(self.observer, rig, needs_draws)
+    def load(self, rig: Rig, needs_draws: str = "") -> Crowd:
+        """The crowd with its observer; notes on stderr say what that cannot give.
+
+        `needs_draws` says what cannot be done without draws.
+        """
+        from thermicon.perception.observer.observer_model import Crowd
+
+        return Crowd(**self.asked, observer=load_observer(self.observer, rig, needs_draws))
 
 
 @dataclass(frozen=True)
@@ -214,7 +219,7 @@ class CrowdOptions(ObserverOptions):
 
     @property
     def asked(self) -> dict[str, Any]:
-        """Arguments of functions that predict for people."""
+        """Words of the crowd, with their number."""
         return {"people": self.people, **super().asked}
 
     def draws(self, model: ObserverModel) -> int:
@@ -261,6 +266,13 @@ class FigureOptions(Options):
 
             write_figure(draw(), self.figure, self.look)
             note(f"wrote {self.figure}")
+
+
+def refuse(options: Mapping[str, object], where: bool, why: str) -> None:
+    """Fail with a usage error for the first option that is given where it has no meaning."""
+    for option, value in options.items():
+        if where and value is not None and value is not False:
+            raise usage(why, option)
 
 
 class JoinError(Exception):

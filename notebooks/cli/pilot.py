@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,22 +11,29 @@ from thermicon.base.files.atomic import OutputError, complete_or_absent
 
 from ..files.outputs import STDOUT, check_output, check_separate
 from ..messages import note, noted, progress_bar, usage
+from ..report.pilot_report import observed_report, opened_report
+from ..report.plan_report import plan_report
+from ..report.terminal import show
 from .options import (
     FigureOptions,
     FileNames,
     Json,
     ObserverOptions,
+    Options,
     RigOptions,
     Theirs,
     command_text,
     opt,
     out,
     read_set,
+    refuse,
     theirs_of,
     write_text,
 )
 
 if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import IconSet
     from thermicon.perception.pilot.measurements_file import Measurements
     from thermicon.perception.pilot.observed import Observed
     from thermicon.perception.pilot.trials import Trials
@@ -39,11 +46,10 @@ KEEP_IT = "With --keep lab.toml, rank, improve and the workbench can predict for
 NEEDS = "laboratories are drawn from draws of a posterior"
 
 
-def pilot_command(
-    files: FileNames,
-    crowd: ObserverOptions,
-    rig: RigOptions,
-    figure: FigureOptions,
+@dataclass(frozen=True)
+class PilotOptions(Options):
+    """What is asked of a set before or after an experiment, and the files that hold and get answers."""
+
     answers: Annotated[
         list[Path] | None,
         out(
@@ -54,8 +60,8 @@ def pilot_command(
             "--answers",
             "--measurements",
         ),
-    ] = None,
-    column: Theirs = None,
+    ] = None
+    column: Theirs = None
     keep: Annotated[
         Path | None,
         out(
@@ -63,13 +69,13 @@ def pilot_command(
             "With answers: write the conditioned observer, and its draws, half as many as --draws, as LAB.csv.",
             "--keep",
         ),
-    ] = None,
+    ] = None
     participants: Annotated[
         str | None, opt("N,N,…", f"Plan: numbers of participants to try, 2 to 500.  [default: {PARTICIPANTS}]")
-    ] = None,
+    ] = None
     trials: Annotated[
         str | None, opt("N,N,…", f"Plan: trials of a participant with each set, to try.  [default: {TRIALS}]")
-    ] = None,
+    ] = None
     wanted: Annotated[
         float | None,
         opt(
@@ -77,7 +83,7 @@ def pilot_command(
             "Plan: wanted width of the 95 % interval in points; with two sets, wanted share of experiments that "
             "distinguish them.  [default: 10; 80]",
         ),
-    ] = None,
+    ] = None
     draws: Annotated[
         int | None,
         opt(
@@ -86,8 +92,63 @@ def pilot_command(
             LEAST_DRAWS,
             MOST_DRAWS,
         ),
-    ] = None,
-    json: Json = None,
+    ] = None
+    json: Json = None
+
+    def check(self, files: Sequence[str], sealed: Sequence[str], figure: Path | None) -> None:
+        """Refuse options that belong to another use of the command: a plan, answers, or a sealed prediction."""
+        if self.answers is not None and len(self.answers) > 1:
+            raise usage("give one file of answers or of measurements, not both", "--answers' / '--measurements")
+        if sealed and (self.answers is None or len(sealed) > 1 or len(sealed) == len(files)):
+            raise usage(
+                "a sealed prediction stands beside the cue files it was made of, one at a time, with --answers", "FILE"
+            )
+        of_plan = {"--participants": self.participants, "--trials": self.trials, "--wanted": self.wanted}
+        of_answers = {"--keep": self.keep, "--column": self.column, "--figure": figure}
+        refuse(of_plan, self.answers is not None, "belongs to a plan, before there are answers")
+        refuse(of_answers, self.answers is None, "needs --answers FILE")
+        if self.json is not None:
+            check_output(self.json, (".json",), "JSON")
+        of_prediction = {"--keep": self.keep, "--figure": figure}
+        refuse(of_prediction, bool(sealed), "belongs to answers without a sealed prediction, which is scored as it is")
+
+    def sizes(self, sets: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Participants and trials that a plan for so many sets tries; what no plan can be for is refused."""
+        participants = _numbers(self.participants or PARTICIPANTS, "--participants", 2, MOST_PARTICIPANTS)
+        trials = _numbers(self.trials or TRIALS, "--trials", 1, MOST_TRIALS)
+        if sets > 2:
+            raise usage("a plan is for one set, or for two that are to be distinguished", "FILE")
+        if self.wanted is not None and not 0.0 < self.wanted < 100.0:
+            raise usage(f"{self.wanted:g} is outside 0 to 100", "--wanted")
+        if self.wanted is not None and self.wanted < 1.0 and sets == 2:
+            raise usage(
+                f"{self.wanted:g} % of experiments is next to nothing; give per cent, such as {100 * self.wanted:g}",
+                "--wanted",
+            )
+        return participants, trials
+
+    @property
+    def table(self) -> Path | None:
+        """The table of draws that is kept beside the observer."""
+        return None if self.keep is None else self.keep.with_suffix(".csv")
+
+    def check_kept(self, files: Sequence[str | Path], figure: Path | None) -> None:
+        """Refuse to keep the laboratory in what is no file of its own, or is there already."""
+        if self.keep is not None and self.table is not None:
+            check_output(self.keep, (".toml",), "an observer")
+            if self.keep == STDOUT:
+                raise usage("- is not a file; give a name such as lab.toml", "--keep")
+            check_output(self.table, (".csv",), "a table of draws")
+        kept = (self.keep, self.table)
+        check_separate(files, [self.json, *kept, figure])
+        if there := [str(path) for path in kept if path is not None and path.exists()]:
+            raise OutputError(
+                f"{' and '.join(there)} already there and kept; give --keep another name, or move them away"
+            )
+
+
+def pilot_command(
+    files: FileNames, asked: PilotOptions, crowd: ObserverOptions, rig: RigOptions, figure: FigureOptions
 ) -> None:
     """Plan an identification experiment, or compare its answers with the prediction and sharpen it by them.
 
@@ -97,145 +158,100 @@ def pilot_command(
     draw of the posterior with people of its own: those that make the answers likely count more. With the JSON of a
     ranking beside its FILES, that prediction is scored on the answers as it was sealed.
     """
-    if answers is not None and len(answers) > 1:
-        raise usage("give one file of answers or of measurements, not both", "--answers' / '--measurements")
     sealed = [name for name in files if name.lower().endswith(".json")]
-    if sealed and (answers is None or len(sealed) > 1 or len(sealed) == len(files)):
-        raise usage(
-            "a sealed prediction stands beside the cue files it was made of, one at a time, with --answers", "FILE"
-        )
-    planned = {"--participants": participants, "--trials": trials, "--wanted": wanted}
-    given = {"--keep": keep, "--column": column, "--figure": figure.figure}
-    for option, value in (planned if answers is not None else given).items():
-        if value is not None:
-            raise usage("belongs to a plan, before there are answers" if answers else "needs --answers FILE", option)
-    if json is not None:
-        check_output(json, (".json",), "JSON")
-    if answers is not None and sealed:
-        if keep is not None or figure.figure is not None:
-            option = "--keep" if keep is not None else "--figure"
-            raise usage("belongs to answers without a sealed prediction, which is scored as it is", option)
-        open_sealed(
-            Path(sealed[0]), answers[0], theirs_of(column), [name for name in files if name not in sealed], rig, json
-        )
-        return
-    if answers is not None:
-        condition(answers[0], theirs_of(column), files, crowd, rig, figure, keep, draws or USUAL_DRAWS, json)
-        return
-    people = _numbers(participants or PARTICIPANTS, "--participants", 2, MOST_PARTICIPANTS)
-    times = _numbers(trials or TRIALS, "--trials", 1, MOST_TRIALS)
-    if len(files) > 2:
-        raise usage("a plan is for one set, or for two that are to be distinguished", "FILE")
-    if wanted is not None and not 0.0 < wanted < 100.0:
-        raise usage(f"{wanted:g} is outside 0 to 100", "--wanted")
-    if wanted is not None and wanted < 1.0 and len(files) == 2:
-        raise usage(
-            f"{wanted:g} % of experiments is next to nothing; give per cent, such as {100 * wanted:g}", "--wanted"
-        )
-    check_separate(files, [json])
+    asked.check(files, sealed, figure.figure)
+    if not asked.answers:
+        plan_experiment(files, asked, crowd, rig)
+    elif sealed:
+        open_sealed(Path(sealed[0]), asked.answers[0], [name for name in files if name not in sealed], asked, rig)
+    else:
+        condition(asked.answers[0], files, asked, crowd, rig, figure)
+
+
+def plan_experiment(files: Sequence[str], asked: PilotOptions, crowd: ObserverOptions, rig: RigOptions) -> None:
+    """Simulate experiments of several sizes; write and show how much each would tell."""
+    participants, trials = asked.sizes(len(files))
+    check_separate(files, [asked.json])
     from thermicon.perception.pilot.plan import plan
 
-    from ..report.plan_report import plan_report
-    from ..report.terminal import show
-
-    sets = [read_set([name]) for name in files]
-    where = rig.load(sets[0], files[0])
-    model = crowd.load(where, NEEDS)
+    icons, *others = (read_set([name]) for name in files)
+    where = rig.load(icons, files[0])
+    people = crowd.load(where, NEEDS)
+    wanted = None if asked.wanted is None else asked.wanted / 100.0
+    draws = asked.draws or USUAL_PLAN_DRAWS
     with progress_bar("simulating experiments") as progress:
-        found = plan(
-            sets[0],
-            where,
-            *sets[1:],
-            participants=people,
-            trials=times,
-            wanted=None if wanted is None else wanted / 100.0,
-            draws=draws or USUAL_PLAN_DRAWS,
-            **crowd.asked,
-            observer=model,
+        planned = plan(
+            icons, where, *others, crowd=people, participants=participants, trials=trials, wanted=wanted, draws=draws,
             progress=progress,
-        )
-    if json is not None:
-        write_text(found.to_json() + "\n", json)
-    if json != STDOUT:
-        show(plan_report(found, [Path(name).name for name in files]))
+        )  # fmt: skip
+    if asked.json is not None:
+        write_text(planned.to_json() + "\n", asked.json)
+    if asked.json != STDOUT:
+        show(plan_report(planned, [Path(name).name for name in files]))
 
 
-def open_sealed(
-    sealed: Path, answers: Path, theirs: dict[str, str], files: Sequence[str], rig: RigOptions, json: Path | None
-) -> None:
-    """Score a sealed prediction on answers; show and write it."""
-    check_separate([sealed, answers, *files], [json])
+def open_sealed(sealed: Path, answers: Path, files: Sequence[str], asked: PilotOptions, rig: RigOptions) -> None:
+    """Score a sealed prediction on answers; write and show how it did."""
+    theirs = theirs_of(asked.column)
+    check_separate([sealed, answers, *files], [asked.json])
     from thermicon.perception.pilot.sealed import opened, read_sealed
     from thermicon.perception.pilot.trials_file import read_trials
 
-    from ..report.pilot_report import opened_report
-    from ..report.terminal import show
-
     icons = read_set(files)
     where = rig.load(icons, files[0])
-    held = read_sealed(sealed, icons, where)
+    prediction = read_sealed(sealed, icons, where)
     with noted():
-        data = read_trials(answers, held.labels, theirs)
-    found = opened(held, data, icons, where)
-    if json is not None:
-        write_text(found.to_json() + "\n", json)
-    if json != STDOUT:
-        show(opened_report(found))
+        trials = read_trials(answers, prediction.labels, theirs)
+    scores = opened(prediction, trials, icons, where)
+    if asked.json is not None:
+        write_text(scores.to_json() + "\n", asked.json)
+    if asked.json != STDOUT:
+        show(opened_report(scores))
 
 
 def condition(
     answers: Path,
-    theirs: dict[str, str],
     files: Sequence[str],
+    asked: PilotOptions,
     crowd: ObserverOptions,
     rig: RigOptions,
     figure: FigureOptions,
-    keep: Path | None,
-    draws: int,
-    json: Path | None,
 ) -> None:
-    """Sharpen the prediction for the sets of a laboratory by its answers or measurements; show and keep it."""
-    drawn = None if keep is None else keep.with_suffix(".csv")
-    if keep is not None and drawn is not None:
-        check_output(keep, (".toml",), "an observer")
-        if keep == STDOUT:
-            raise usage("- is not a file; give a name such as lab.toml", "--keep")
-        check_output(drawn, (".csv",), "a table of draws")
-    check_separate([answers, *files, *([crowd.observer] if crowd.observer else [])], [json, keep, drawn, figure.figure])
-    if there := [str(path) for path in (keep, drawn) if path is not None and path.exists()]:
-        raise OutputError(f"{' and '.join(there)} already there and kept; give --keep another name, or move them away")
-    from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
+    """Sharpen the prediction for the sets of a laboratory by its answers or measurements; write, keep and show it."""
+    theirs = theirs_of(asked.column)
+    asked.check_kept([answers, *files, *([crowd.observer] if crowd.observer else [])], figure.figure)
     from thermicon.perception.pilot.observed import observed
-    from thermicon.perception.pilot.trials_file import read_trials
 
     from ..figures.set_figures import observed_figure
-    from ..report.pilot_report import observed_report
-    from ..report.terminal import show
 
     icons, *others = (read_set([name]) for name in files)
     where = rig.load(icons, files[0])
-    model = crowd.load(where, NEEDS)
-    data: Trials | Measurements
-    if is_measurements(answers, theirs):
-        data = read_measurements(answers, where, theirs)
-    else:
-        with noted():
-            data = read_trials(answers, [icon.name for icon in icons], theirs)
+    people = crowd.load(where, NEEDS)
+    data = _read_answers(answers, theirs, icons, where)
+    draws = asked.draws or USUAL_DRAWS
     with progress_bar("simulating laboratories") as progress:
-        found = observed(
-            data, icons, where, others=others, draws=draws, observer=model, progress=progress, **crowd.asked
-        )
-    if json is not None:
-        write_text(found.to_json() + "\n", json)
-    figure.write(lambda: observed_figure(found, figure.look))
+        laboratory = observed(data, icons, where, crowd=people, others=others, draws=draws, progress=progress)
+    if asked.json is not None:
+        write_text(laboratory.to_json() + "\n", asked.json)
+    figure.write(lambda: observed_figure(laboratory, figure.look))
     last = KEEP_IT
-    if keep is not None and drawn is not None:
-        _keep(found, keep, drawn)
-        kept = replace(crowd, seed=0, observer=drawn)
+    if asked.keep is not None and asked.table is not None:
+        _keep(laboratory, asked.keep, asked.table)
+        kept = replace(crowd, seed=0, observer=asked.table)
         last = f"Predict for this laboratory:\n  {command_text(files[:1], rig, kept, paths=True)}"
-    if json == STDOUT:
-        return
-    show(observed_report(found, files, last))
+    if asked.json != STDOUT:
+        show(observed_report(laboratory, files, last))
+
+
+def _read_answers(path: Path, theirs: dict[str, str], icons: IconSet, rig: Rig) -> Trials | Measurements:
+    """The answers to a set in a file, or what was measured."""
+    from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
+    from thermicon.perception.pilot.trials_file import read_trials
+
+    if is_measurements(path, theirs):
+        return read_measurements(path, rig, theirs)
+    with noted():
+        return read_trials(path, [icon.name for icon in icons], theirs)
 
 
 def _keep(found: Observed[Any, Any], keep: Path, drawn: Path) -> None:

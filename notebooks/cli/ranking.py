@@ -34,11 +34,13 @@ from .options import (
     opt,
     out,
     read_set,
+    refuse,
     site_warnings,
     write_text,
 )
 
 if TYPE_CHECKING:
+    from thermicon.icons import IconSet
     from thermicon.perception import Task
     from thermicon.perception.observer.observer_model import ObserverModel
 
@@ -58,7 +60,7 @@ class RankedBy(CrowdOptions):
 
     @property
     def asked(self) -> dict[str, Any]:
-        """Arguments of `rank`, whose result has the rules' scores whatever is remembered."""
+        """Words of the crowd; a ranking has the rules' scores whatever is remembered."""
         return {**super().asked, "memory": "episodes"} if self.memory == "rules" else super().asked
 
     def draws(self, model: ObserverModel) -> int:
@@ -142,49 +144,52 @@ def rank_command(
     check_separate(files, [json, report, figure.figure])
     here = read_workers(workers)
     about_people: dict[str, object] = {"--doubt": doubt, "--report": report, "--goal": goal}
-    for option, value in about_people.items():
-        if value and crowd.memory == "rules":
-            raise usage("is about predictions for people: leave out --by rules", option)
+    refuse(about_people, crowd.memory == "rules", "is about predictions for people: leave out --by rules")
     wanted = goal_of(goal)
     if doubt:
-        given = {"--task": task.task, "--goal": goal, "--report": report, "--workers": workers, "--details": details}
-        for option, value in {**given, "--tracking": crowd.tracking}.items():
-            if value:
-                raise usage("belongs to a ranking; leave it out, or --doubt", option)
+        of_ranking: dict[str, object] = {"--task": task.task, "--goal": goal, "--report": report, "--workers": workers}
+        of_ranking |= {"--details": details, "--tracking": crowd.tracking}
+        refuse(of_ranking, doubt, "belongs to a ranking; leave it out, or --doubt")
         doubt_about(files, crowd, rig, figure, json)
         return
+    icons = _read_rankable(files)
+    from ..report.set_report import cures, report_of
+
+    where = rig.load(icons, files[0])
+    warnings = (*where.warnings, *site_warnings(files[0], icons, where))
+    people = crowd.load(where)
+    draws = crowd.draws(people.model)
+    _say_if_first()
+    trials, named = task.load()
+    ranked = report_of(
+        icons, where, draws, goal=wanted, warnings=warnings, workers=here, crowd=people, trials=trials, task=named
+    )
+    if json is not None and json != STDOUT:
+        write_text(ranked.to_json() + "\n", json)
+    figure.write_set(ranked.ranking)
+    near = cures(ranked.ranking, icons, where) if report is not None or json != STDOUT else {}
+    if report is not None:
+        from ..report.rank_page import report as page
+
+        write_text(page(ranked, icons, where, command_text(files, rig, crowd, task), near), report)
+    if json == STDOUT:
+        typer.echo(ranked.to_json())
+    elif crowd.memory == "rules":
+        show(rules_report(ranked.ranking, icons.title))
+    else:
+        following = after_ranking(ranked, commands(files, rig, crowd), near)
+        show(rank_report(ranked, icons.title, near, following, details))
+
+
+def _read_rankable(files: Sequence[str]) -> IconSet:
+    """The icons of all files, of which every pair can be compared."""
     icons = read_set(files)
     if len(icons) > MOST_ICONS:
         what = (
             f"there are {len(icons):,} icons, and every pair is compared: at most {MOST_ICONS:,} can be ranked at once"
         )
         raise usage(f"{what}; narrow a family, or put its best members into a separate set", "FILE")
-    from ..report.set_report import cures, report_of
-
-    where = rig.load(icons, files[0])
-    warnings = (*where.warnings, *site_warnings(files[0], icons, where))
-    model = crowd.load(where)
-    draws = crowd.draws(model)
-    _say_if_first()
-    trials, named = task.load()
-    asked = {**crowd.asked, "goal": wanted, "trials": trials, "task": named, "observer": model}
-    found = report_of(icons, where, draws, warnings=warnings, workers=here, **asked)
-    if json is not None and json != STDOUT:
-        write_text(found.to_json() + "\n", json)
-    figure.write_set(found.ranking)
-    near = cures(found.ranking, icons, where) if report is not None or json != STDOUT else {}
-    if report is not None:
-        from ..report.rank_page import report as page
-
-        command = command_text(files, rig, crowd, task)
-        write_text(page(found, icons, where, command, near), report)
-    if json == STDOUT:
-        typer.echo(found.to_json())
-    elif crowd.memory == "rules":
-        show(rules_report(found.ranking, icons.title))
-    else:
-        following = after_ranking(found, commands(files, rig, crowd), near)
-        show(rank_report(found, icons.title, near, following, details))
+    return icons
 
 
 def doubt_about(
@@ -199,10 +204,10 @@ def doubt_about(
     if len(icons) < 2:
         fail(f"{files[0]}: --doubt needs at least two icons, since one alone is never confused")
     where = rig.load(icons, files[0])
-    model = crowd.load(where, "what carries the doubt is read from draws of a posterior")
-    draws = check_draws(model, crowd.intervals, "--intervals", DRAWS, FEWEST_DRAWS)
+    people = crowd.load(where, "what carries the doubt is read from draws of a posterior")
+    draws = check_draws(people.model, crowd.intervals, "--intervals", DRAWS, FEWEST_DRAWS)
     with progress_bar("doubt") as progress:
-        found = sensitivity(icons, where, draws=draws, observer=model, progress=progress, **crowd.asked)
+        found = sensitivity(icons, where, crowd=people, draws=draws, progress=progress)
     if json is not None:
         write_text(dumps(asdict(found), ensure_ascii=False, indent=1) + "\n", json)
     figure.write(lambda: found.plot().figure)

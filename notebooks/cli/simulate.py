@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from importlib.metadata import version
@@ -38,6 +38,7 @@ from .options import (
     out,
     pick,
     read_set,
+    refuse,
     theirs_of,
     write_text,
 )
@@ -116,12 +117,12 @@ def simulate_command(
     needs_file = {"--icon": icon, "--tail": tail}
     alone = {"--rate": rate != 100.0, **needs_file}
     in_session = {"--gap": gap is not None, "--seed": seed is not None, "--tracking": tracking}
-    _refuse({"--hold": hold, "--column": column}, current is None, "belongs to --current, which plays a drive")
-    _refuse(in_session, not session, "belongs to a session; give --order FILE or --random N")
-    _refuse({"--seed": seed is not None}, random is None, "belongs to --random")
-    _refuse({"--figure": figure.figure}, circuit, "belongs to a trace, not to a circuit")
-    _refuse({"--current": current, "--random": random and order, **alone}, session, "does not go with a session")
-    _refuse(needs_file, current is not None, "belongs to a cue FILE; a drive has no icons and ends at its last row")
+    refuse({"--hold": hold, "--column": column}, current is None, "belongs to --current, which plays a drive")
+    refuse(in_session, not session, "belongs to a session; give --order FILE or --random N")
+    refuse({"--seed": seed is not None}, random is None, "belongs to --random")
+    refuse({"--figure": figure.figure}, circuit, "belongs to a trace, not to a circuit")
+    refuse({"--current": current, "--random": random and order, **alone}, session, "does not go with a session")
+    refuse(needs_file, current is not None, "belongs to a cue FILE; a drive has no icons and ends at its last row")
     if (file is None) == (current is None):
         raise usage("give either a cue FILE or --current DRIVE.csv", "FILE")
     if current is not None:
@@ -132,13 +133,6 @@ def simulate_command(
         session_file(file, rig, order, random, 10.0 if gap is None else gap, seed or 0, tracking, output, figure)
     elif file is not None:
         simulate_file(file, icon, rig, rate, tail, output, figure)
-
-
-def _refuse(options: Mapping[str, object], where: bool, why: str) -> None:
-    """Fail with a usage error for the first option that is given where it has no meaning."""
-    for option, value in options.items():
-        if where and value is not None and value is not False:
-            raise usage(why, option)
 
 
 def simulate_file(
