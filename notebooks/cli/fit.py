@@ -85,8 +85,7 @@ def fit_command(
     from thermicon.circuit.fitting.log import read_log
 
     where = rig.load()
-    if output is not None:
-        check_output(output, RIG_SUFFIXES, "a rig")
+    check_output(output, RIG_SUFFIXES, "a rig")
     check_separate(logs, [output, figure.figure])
     read = [read_log(log, theirs_of(column)) for log in logs]
     for name in theirs_of(column):

@@ -197,10 +197,7 @@ class ObserverOptions(Options):
         return {"seed": self.seed, "tracking": self.tracking, "memory": self.memory}
 
     def load(self, rig: Rig, needs_draws: str = "") -> Crowd:
-        """The crowd with its observer; notes on stderr say what that cannot give.
-
-        `needs_draws` says what cannot be done without draws.
-        """
+        """The crowd; notes on stderr say what its observer lacks. `needs_draws`: what cannot be done without draws."""
         from thermicon.perception.observer.observer_model import Crowd
 
         return Crowd(**self.asked, observer=load_observer(self.observer, rig, needs_draws))
@@ -242,8 +239,7 @@ class FigureOptions(Options):
         if self.figure is None and self.paper is not None:
             raise usage("belongs to a figure; name its file with --figure", "--paper")
         read_width_mm(self.paper or "85mm")
-        if self.figure is not None:
-            check_output(self.figure, FIGURE_SUFFIXES, "a figure")
+        check_output(self.figure, FIGURE_SUFFIXES, "a figure")
 
     @property
     def look(self) -> Look:

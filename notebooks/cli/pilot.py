@@ -32,8 +32,6 @@ from .options import (
 )
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.icons import IconSet
     from thermicon.perception.pilot.measurements_file import Measurements
     from thermicon.perception.pilot.observed import Observed
     from thermicon.perception.pilot.trials import Trials
@@ -107,8 +105,7 @@ class PilotOptions(Options):
         of_answers = {"--keep": self.keep, "--column": self.column, "--figure": figure}
         refuse(of_plan, self.answers is not None, "belongs to a plan, before there are answers")
         refuse(of_answers, self.answers is None, "needs --answers FILE")
-        if self.json is not None:
-            check_output(self.json, (".json",), "JSON")
+        check_output(self.json, (".json",), "JSON")
         of_prediction = {"--keep": self.keep, "--figure": figure}
         refuse(of_prediction, bool(sealed), "belongs to answers without a sealed prediction, which is scored as it is")
 
@@ -127,24 +124,19 @@ class PilotOptions(Options):
             )
         return participants, trials
 
-    @property
-    def table(self) -> Path | None:
-        """The table of draws that is kept beside the observer."""
-        return None if self.keep is None else self.keep.with_suffix(".csv")
-
-    def check_kept(self, files: Sequence[str | Path], figure: Path | None) -> None:
-        """Refuse to keep the laboratory in what is no file of its own, or is there already."""
-        if self.keep is not None and self.table is not None:
-            check_output(self.keep, (".toml",), "an observer")
-            if self.keep == STDOUT:
-                raise usage("- is not a file; give a name such as lab.toml", "--keep")
-            check_output(self.table, (".csv",), "a table of draws")
-        kept = (self.keep, self.table)
-        check_separate(files, [self.json, *kept, figure])
-        if there := [str(path) for path in kept if path is not None and path.exists()]:
+    def kept(self, files: Sequence[str | Path], figure: Path | None) -> tuple[Path, Path] | None:
+        """The observer and the table of draws that are kept, which are new files of their own; None: nothing is."""
+        kept = None if self.keep is None else (self.keep, self.keep.with_suffix(".csv"))
+        check_output(self.keep, (".toml",), "an observer")
+        if self.keep == STDOUT:
+            raise usage("- is not a file; give a name such as lab.toml", "--keep")
+        check_output(kept and kept[1], (".csv",), "a table of draws")
+        check_separate(files, [self.json, *(kept or ()), figure])
+        if there := [str(path) for path in kept or () if path.exists()]:
             raise OutputError(
                 f"{' and '.join(there)} already there and kept; give --keep another name, or move them away"
             )
+        return kept
 
 
 def pilot_command(
@@ -210,24 +202,27 @@ def open_sealed(sealed: Path, answers: Path, files: Sequence[str], asked: PilotO
 
 
 def condition(
-    answers: Path,
-    files: Sequence[str],
-    asked: PilotOptions,
-    crowd: ObserverOptions,
-    rig: RigOptions,
+    answers: Path, files: Sequence[str], asked: PilotOptions, crowd: ObserverOptions, rig: RigOptions,
     figure: FigureOptions,
-) -> None:
+) -> None:  # fmt: skip
     """Sharpen the prediction for the sets of a laboratory by its answers or measurements; write, keep and show it."""
-    theirs = theirs_of(asked.column)
-    asked.check_kept([answers, *files, *([crowd.observer] if crowd.observer else [])], figure.figure)
+    columns = theirs_of(asked.column)
+    kept = asked.kept([answers, *files, *([crowd.observer] if crowd.observer else [])], figure.figure)
+    from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
     from thermicon.perception.pilot.observed import observed
+    from thermicon.perception.pilot.trials_file import read_trials
 
     from ..figures.set_figures import observed_figure
 
     icons, *others = (read_set([name]) for name in files)
     where = rig.load(icons, files[0])
     people = crowd.load(where, NEEDS)
-    data = _read_answers(answers, theirs, icons, where)
+    data: Trials | Measurements
+    if is_measurements(answers, columns):
+        data = read_measurements(answers, where, columns)
+    else:
+        with noted():
+            data = read_trials(answers, [icon.name for icon in icons], columns)
     draws = asked.draws or USUAL_DRAWS
     with progress_bar("simulating laboratories") as progress:
         laboratory = observed(data, icons, where, crowd=people, others=others, draws=draws, progress=progress)
@@ -235,23 +230,12 @@ def condition(
         write_text(laboratory.to_json() + "\n", asked.json)
     figure.write(lambda: observed_figure(laboratory, figure.look))
     last = KEEP_IT
-    if asked.keep is not None and asked.table is not None:
-        _keep(laboratory, asked.keep, asked.table)
-        kept = replace(crowd, seed=0, observer=asked.table)
-        last = f"Predict for this laboratory:\n  {command_text(files[:1], rig, kept, paths=True)}"
+    if kept is not None:
+        _keep(laboratory, *kept)
+        command = command_text(files[:1], rig, replace(crowd, seed=0, observer=kept[1]), paths=True)
+        last = f"Predict for this laboratory:\n  {command}"
     if asked.json != STDOUT:
         show(observed_report(laboratory, files, last))
-
-
-def _read_answers(path: Path, theirs: dict[str, str], icons: IconSet, rig: Rig) -> Trials | Measurements:
-    """The answers to a set in a file, or what was measured."""
-    from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
-    from thermicon.perception.pilot.trials_file import read_trials
-
-    if is_measurements(path, theirs):
-        return read_measurements(path, rig, theirs)
-    with noted():
-        return read_trials(path, [icon.name for icon in icons], theirs)
 
 
 def _keep(found: Observed[Any, Any], keep: Path, drawn: Path) -> None:

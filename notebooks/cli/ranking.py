@@ -40,7 +40,6 @@ from .options import (
 )
 
 if TYPE_CHECKING:
-    from thermicon.icons import IconSet
     from thermicon.perception import Task
     from thermicon.perception.observer.observer_model import ObserverModel
 
@@ -135,12 +134,10 @@ def rank_command(
     with many draws of the posterior (--people 24 is enough) as new laboratories would see it, and the table says which
     constants their differences come from.
     """
-    if report is not None:
-        check_output(report, (".html", ".htm"), "a report")
-        if report == STDOUT:
-            raise usage("- is not a file; give the name of a page, such as report.html", "--report")
-    if json is not None:
-        check_output(json, (".json",), "JSON")
+    check_output(report, (".html", ".htm"), "a report")
+    if report == STDOUT:
+        raise usage("- is not a file; give the name of a page, such as report.html", "--report")
+    check_output(json, (".json",), "JSON")
     check_separate(files, [json, report, figure.figure])
     here = read_workers(workers)
     about_people: dict[str, object] = {"--doubt": doubt, "--report": report, "--goal": goal}
@@ -152,7 +149,12 @@ def rank_command(
         refuse(of_ranking, doubt, "belongs to a ranking; leave it out, or --doubt")
         doubt_about(files, crowd, rig, figure, json)
         return
-    icons = _read_rankable(files)
+    icons = read_set(files)
+    if len(icons) > MOST_ICONS:
+        what = (
+            f"there are {len(icons):,} icons, and every pair is compared: at most {MOST_ICONS:,} can be ranked at once"
+        )
+        raise usage(f"{what}; narrow a family, or put its best members into a separate set", "FILE")
     from ..report.set_report import cures, report_of
 
     where = rig.load(icons, files[0])
@@ -179,17 +181,6 @@ def rank_command(
     else:
         following = after_ranking(ranked, commands(files, rig, crowd), near)
         show(rank_report(ranked, icons.title, near, following, details))
-
-
-def _read_rankable(files: Sequence[str]) -> IconSet:
-    """The icons of all files, of which every pair can be compared."""
-    icons = read_set(files)
-    if len(icons) > MOST_ICONS:
-        what = (
-            f"there are {len(icons):,} icons, and every pair is compared: at most {MOST_ICONS:,} can be ranked at once"
-        )
-        raise usage(f"{what}; narrow a family, or put its best members into a separate set", "FILE")
-    return icons
 
 
 def doubt_about(

@@ -182,8 +182,7 @@ def simulate_drive(
 def _check_outputs(read: str | Path, output: Path | None, pictures: Sequence[Path]) -> None:
     """Fail where a file cannot be written or would replace what is read."""
     check_separate([read], [output, *pictures])
-    if output is not None:
-        check_output(output, TRACE_SUFFIXES, "a trace")
+    check_output(output, TRACE_SUFFIXES, "a trace")
 
 
 def tell(traces: Sequence[Trace], rig: Rig, output: Path | None, cures: Sequence[str | None]) -> list[bool]:
@@ -261,8 +260,7 @@ def session_file(
     from thermicon.circuit import SessionPlan, play_session
     from thermicon.circuit.safety.session_plan import order_text, read_order
 
-    if output is not None:
-        check_output(output, (*TRACE_SUFFIXES, NUMBERS, ORDER), "a session")
+    check_output(output, (*TRACE_SUFFIXES, NUMBERS, ORDER), "a session")
     check_separate([file] if order is None else [file, order], (output, figure.figure))
     icons = read_set([file])
     rig = asked.load(icons, file)

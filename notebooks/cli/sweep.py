@@ -228,8 +228,7 @@ def sweep_command(
         raise usage(f"{AGE} changes what people perceive only; add --measure felt-and-named", "--vary")
     if output is None and figure.figure is None and not what:
         raise usage("give -o OUT for the table, --figure, or --measure to print what people perceive", "-o")
-    if output is not None:
-        check_output(output, TRACE_SUFFIXES, "a sweep")
+    check_output(output, TRACE_SUFFIXES, "a sweep")
     check_separate([file], [output, figure.figure])
     icons = pick(whole := read_set([file]), icon)
     where = rig.load(whole, file)

@@ -21,8 +21,7 @@ def validate_command(
     """
     if draws == 1:
         raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--draws")
-    if json is not None:
-        check_output(json, (".json",), "JSON")
+    check_output(json, (".json",), "JSON")
     from thermicon.perception.evidence.validate import validate
 
     from ..report.terminal import show

@@ -12,12 +12,12 @@ NETLIST_SUFFIXES = (".cir", ".net", ".sp")
 FIGURE_SUFFIXES = (".png", ".pdf", ".svg")
 
 
-def check_output(path: Path, suffixes: Sequence[str], what: str) -> None:
+def check_output(path: Path | None, suffixes: Sequence[str], what: str) -> None:
     """Fail now, with the reason, where writing ``path`` would fail later.
 
-    ``suffixes`` are the file types on offer (empty: any), ``what`` names the thing written. ``-`` is always fine.
+    ``suffixes`` are the file types on offer (empty: any), ``what`` names the thing written. ``-`` and None are fine.
     """
-    if path == STDOUT:
+    if path is None or path == STDOUT:
         return
     if path.is_dir():
         raise OutputError(f"cannot write {path}: it is a folder; give the name of a file")

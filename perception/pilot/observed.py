@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar, Unpack
@@ -196,36 +196,34 @@ def observed(
     if "people" in words:
         raise InputError("observed: people are the participants; leave it out")
     icons, crowd = set_of(icons), crowd.but(**words)
-    rig, names, seed = Rig.of(rig, icons.context.site), tuple(icon.name for icon in icons), crowd.seed
+    rig, seed = Rig.of(rig, icons.context.site), crowd.seed
+    names = tuple(icon.name for icon in icons)
     if isinstance(trials, Trials) and trials.icons != names:
         raise ValueError(f"the answers are to other icons than those of the set ({', '.join(names[:6])})")
     if draws < LEAST_DRAWS:
         raise ValueError(f"an interval needs at least {LEAST_DRAWS} draws, not {draws}")
     prior, further = LaboratoryPrior.of(crowd.observer, crowd.memory), [set_of(each) for each in others]
-    number = laboratories_for(max(len(names), *(len(list(other)) for other in further), 2), draws)
+    number = laboratories_for(max(2, *(len(list(each)) for each in (icons, *further))), draws)
     before, kept = prior.first(number, seed), max(number // 2, 2)
     step = step_counter(progress, (1 + len(others)) * (number + kept))
     main = stage(icons, rig, prior, seed=seed, tracking=crowd.tracking)
     data: Any = Namings(trials, main) if isinstance(trials, Trials) else MeasuredValues(trials, prior, Setting.of(rig))
-    found: Conditioned = condition(data, before, seed=seed, kept=kept, step=step)
-
-    def both(played: Stage) -> tuple[Confusions, Confusions]:
-        return played.confusions(before, step), played.confusions(found.after, step)
-
-    pairs = [(found.simulated, found.simulated_after) if isinstance(trials, Trials) else both(main)]
-    pairs += [both(stage(other, rig, prior, seed=seed, tracking=crowd.tracking)) for other in further]
+    conditioned = condition(data, before, seed=seed, kept=kept, step=step)
+    # Answers to the set were simulated already, to weigh the laboratories.
+    answers = (conditioned.simulated, conditioned.simulated_after) if isinstance(trials, Trials) else None
+    stages = (stage(other, rig, prior, seed=seed, tracking=crowd.tracking) for other in further)
+    pairs = [answers or _played(main, conditioned, step), *(_played(each, conditioned, step) for each in stages)]
+    after = prior.values(conditioned.after)
     return Observed(
         data=data,
-        fit=data.compare(found.simulated, seed),
-        fit_after=data.compare(found.simulated_after, seed),
+        fit=data.compare(conditioned.simulated, seed),
+        fit_after=data.compare(conditioned.simulated_after, seed),
         predictions=tuple(
             ChangedPrediction(*(SetPrediction.of(each.title, one) for one in pair))
             for each, pair in zip((icons, *further), pairs, strict=True)
         ),
-        constants=changed(
-            prior.names, prior.values(before), prior.values(found.after), found.effective_after, prior.units
-        ),
-        conditioned=found,
+        constants=changed(prior.names, prior.values(before), after, conditioned.effective_after, prior.units),
+        conditioned=conditioned,
         confusions_after=pairs[0][1],
         prior=prior,
         played=main,
@@ -235,3 +233,8 @@ def observed(
         seed=seed,
         version=own_version(),
     )
+
+
+def _played(of_set: Stage, conditioned: Conditioned, step: Callable[[], None]) -> tuple[Confusions, Confusions]:
+    """Confusions of a set in the laboratories before and after the data."""
+    return of_set.confusions(conditioned.before, step), of_set.confusions(conditioned.after, step)

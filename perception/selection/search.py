@@ -155,23 +155,13 @@ def search(
     run, model = SearchRun(icons, count), crowd.model
     crowd = crowd.but(observer=model)  # a file is read once
     nominal = Evaluator(rig, objective, crowd.memory, seed, model.nominal, crowd.tracking, wanted)
-    first = model.people(PEOPLE, seed)
-    few = replace(nominal, crowd=first)
-    draws, parts = model.draw_count(parameters, DRAWS), list[GoalPart]()
+    few = replace(nominal, crowd=model.people(PEOPLE, seed))
+    draws, parts = model.draw_count(parameters, DRAWS), () if wanted is None else _judging(wanted)
     if wanted is not None:
         wanted.check_draws(draws)
-        # Those for a share of people first.
-        judged = [part for part in wanted.parts if part in wanted.of_sets or part.quantity == "detected"]
-        parts = sorted(judged, key=lambda part: (part.people is None, -(part.people or 0.0)))
-    rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
 
-    def as_set(of: list[Candidate]) -> IconSet:
-        return set_of_run(icons, of, rig, FOUND, FOUND, f"seed {seed}")
-
-    def as_written(scores: Appraisal, of: list[Candidate]) -> Appraisal:
-        names = dict(zip((candidate.icon.name for candidate in of), names_of(of), strict=True))
-        a, b = scores.worst_pair
-        return replace(scores, worst_pair=(names[a], names[b]))
+    def as_set(candidates: list[Candidate]) -> IconSet:
+        return set_of_run(icons, candidates, rig, FOUND, FOUND, f"seed {seed}")
 
     def tell(tried: int, held: list[Candidate]) -> None:
         if progress is not None:
@@ -179,28 +169,20 @@ def search(
         if best_so_far is not None:
             best_so_far(as_set(held))
 
-    start = run.start(few, rng)  # as a choice would
-    tell(run.tried, start)
-    rounds = max(0, round((evaluations - run.tried) / (BATCH * run.free)))
-    last = max(1, rounds // PER_ROUND)
-    held = run.improve(start, nominal, rounds, BATCH, rng, WIDEST, tell)
-    screened = run.tried
-    best = run.improve(max((start, held), key=few.score), few, last, REFINING, rng, REFINED, tell)
-    different = {frozenset(one.icon.name for one in each): each for each in (start, best, held)}
-    finalists = list(different.values())
+    start, finalists, screened = _climbed(run, nominal, few, evaluations, tell)
     sets = [tuple(candidate.icon for candidate in candidates) for candidates in finalists]
-    scores = [appraise(each, rig, crowd=crowd) for each in sets]
+    scores = [appraise(of_set, rig, crowd=crowd) for of_set in sets]
     persons: list[dict[str, Array]] = [{} for _ in sets]
     if any(part.people is not None for part in parts):
-        ranked = [rank(one, rig, crowd=crowd, parameters=draws) for one in sets]
+        ranked = [rank(of_set, rig, crowd=crowd, parameters=draws) for of_set in sets]
         persons = [one.new_laboratory.persons for one in ranked if one.new_laboratory is not None]
     place = max(range(len(sets)), key=lambda k: _merit(parts, objective, scores[k], persons[k]))
-    best, after = finalists[place], scores[place]
+    best = finalists[place]
     return SearchResult(
         found=as_set(best),
         start=tuple(as_set(start)),
-        before=as_written(scores[0], start),
-        after=as_written(after, best),
+        before=_as_written(scores[0], start),
+        after=_as_written(scores[place], best),
         objective=objective,
         seed=seed,
         evaluations=screened,
@@ -209,6 +191,35 @@ def search(
         finalists=len(finalists),
         chosen_by=" and ".join(word_of(part.quantity) + part.whose for part in parts) or objective,
     )
+
+
+def _judging(goal: Goal) -> Sequence[GoalPart]:
+    """Parts of a goal that the sets held at the end are judged by, those for a share of people first."""
+    judged = [part for part in goal.parts if part in goal.of_sets or part.quantity == "detected"]
+    return sorted(judged, key=lambda part: (part.people is None, -(part.people or 0.0)))
+
+
+def _climbed(
+    run: SearchRun, nominal: Evaluator, few: Evaluator, evaluations: int, tell: Callable[[int, list[Candidate]], None]
+) -> tuple[list[Candidate], list[list[Candidate]], int]:
+    """The start, the different sets that are held at the end, and how many icons the nominal person evaluated."""
+    rng = np.random.default_rng(np.random.SeedSequence([nominal.seed, 8]))
+    start = run.start(few, rng)  # as a choice would
+    tell(run.tried, start)
+    rounds = max(0, round((evaluations - run.tried) / (BATCH * run.free)))
+    last = max(1, rounds // PER_ROUND)
+    held = run.improve(start, nominal, rounds, BATCH, rng, WIDEST, tell)
+    screened = run.tried
+    best = run.improve(max((start, held), key=few.score), few, last, REFINING, rng, REFINED, tell)
+    different = {frozenset(one.icon.name for one in each): each for each in (start, best, held)}
+    return start, list(different.values()), screened
+
+
+def _as_written(scores: Appraisal, candidates: list[Candidate]) -> Appraisal:
+    """The scores, with the worst pair under the names that a file gives its icons."""
+    names = dict(zip((candidate.icon.name for candidate in candidates), names_of(candidates), strict=True))
+    a, b = scores.worst_pair
+    return replace(scores, worst_pair=(names[a], names[b]))
 
 
 def _merit(

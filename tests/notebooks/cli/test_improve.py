@@ -240,7 +240,7 @@ def test_who_watches_is_shown_a_rough_table_first_which_stays_when_the_rest_is_i
     asked = ("improve", "six-icons", "--up-to", 3, "--people", 26, "--intervals", 2)
     whole = cli.good(*asked).stdout
     assert "Rough" not in whole
-    monkeypatch.setattr("thermicon.notebooks.cli.improving.shown_at_once", lambda: True)
+    monkeypatch.setattr("thermicon.notebooks.cli.improve.shown_at_once", lambda: True)
     rough, _, rest = cli.good(*asked).stdout.partition("Rough: 24 virtual people; each per cent within about 3 points")
     assert "for 24 virtual people" in " ".join(rough.split())
     assert rest.endswith(whole)
