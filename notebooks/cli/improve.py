@@ -237,8 +237,7 @@ class Improvement:
             with progress_bar("searching") as progress:
                 return search(
                     self.icons, self.rig, crowd=self.crowd, count=count, objective=self.objective,
-                    evaluations=evaluations, goal=self.goal, parameters=self.draws, progress=progress,
-                    best_so_far=hold,
+                    evaluations=evaluations, goal=self.goal, parameters=self.draws, progress=progress, best_so_far=hold,
                 )  # fmt: skip
         except KeyboardInterrupt:
             if held:

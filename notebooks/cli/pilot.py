@@ -170,11 +170,10 @@ def plan_experiment(files: Sequence[str], asked: PilotOptions, crowd: ObserverOp
     where = rig.load(icons, files[0])
     people = crowd.load(where, NEEDS)
     wanted = None if asked.wanted is None else asked.wanted / 100.0
-    draws = asked.draws or USUAL_PLAN_DRAWS
     with progress_bar("simulating experiments") as progress:
         planned = plan(
-            icons, where, *others, crowd=people, participants=participants, trials=trials, wanted=wanted, draws=draws,
-            progress=progress,
+            icons, where, *others, crowd=people, participants=participants, trials=trials, wanted=wanted,
+            draws=asked.draws or USUAL_PLAN_DRAWS, progress=progress,
         )  # fmt: skip
     if asked.json is not None:
         write_text(planned.to_json() + "\n", asked.json)
