@@ -1,4 +1,4 @@
-"""What a fit noticed, for the reader of its result.
+"""What a fit notices for the reader of its result.
 
 Of several causes of one misfit the first is named: a column that is late and explains it all, a fit that did not come
 to rest, a start that was not steady, and only then keys that are held fixed.
