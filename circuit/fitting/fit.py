@@ -13,10 +13,10 @@ from thermicon.base.numbers.cores import quiet_blas
 
 from ..rig.faults import PARAMETERS
 from ..rig.rig import AnyRig, Rig
-from .identify import identified, in_series, tellable
+from .identify import identified, tellable
 from .keys import CONTACT, FitError, FitKey, free_keys, possible_keys
 from .log import Log, LogError, read_log
-from .notes import beyond_noise, disagreement, far_off, kept, late_column, remarks, too_narrow
+from .notes import Noticed, beyond_noise, closing, disagreement, far_off, late_column, remarks
 from .overlay import aligned, check_clocks, check_sensors
 from .problem import OFFSET_SD_K, FitProblem, changed_layers
 from .rig_fit import RigFit, channel_fits, reason_of, uncertainties
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
 LAYER_DIGITS = 5
 """Significant digits of the layers in the fitted rig."""
-
-NOT_NARROWED = "so that the uncertainty which the safety gate relies on is not narrowed by this fit"
 
 MOST_OFFSET_K = 10.0
 """A sensor that is off by more is broken."""
@@ -102,7 +100,7 @@ def fit(
             names = ", ".join(run.name for run in runs)
             raise FitError(f"{names}: tells no key of rig {rig.name}; name keys to try them")
         free = free or (CONTACT,)  # with the outermost layer, in series
-        notes.insert(0, f"no keys were named; the logs tell best {', '.join(free)}")
+        notes.insert(0, str(Noticed("no-keys", {"keys": ", ".join(free)})))
     keys = free_keys((free,) if isinstance(free, str) else free, rig, alone)
     problem = FitProblem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin)
     check_sensors(problem)
@@ -140,15 +138,15 @@ def _result(
 ) -> RigFit:  # fmt: skip
     missed = beyond_noise(problem, solution.theta, solution.inflation)
     late = late_column(problem, solution)
-    parameters, correlation = identified(problem, solution, start, late=bool(late))
+    parameters, correlation = identified(problem, solution, start, late=late is not None)
     unknown = tuple(item for item in parameters if not item.identified)
     disagreed, why = disagreement(problem, solution, missed, late, unknown)
-    remarked = remarks(problem, solution.theta, misfit=bool(why))
+    remarked = remarks(problem, solution.theta, misfit=why is not None)
     if far_off(problem, solution.theta):
-        why = why or "a sensor is off by more than sensors are assumed to be"
-    misfit = bool(why)
+        why = why or Noticed("sensor-why")
+    misfit = why is not None
     if any(run.points for run in problem.runs):
-        why = why or "the drive is known at points only"
+        why = why or Noticed("points-why")
     layers = changed_layers(problem.rig, problem.factors(solution.theta))
     fitted = problem.rig.with_(
         **{key: float(f"{value:.{LAYER_DIGITS}g}") for key, value in layers.items()},
@@ -156,19 +154,14 @@ def _result(
     )
     measured = any(channel.column.endswith("_C") for _, _, channel in problem.channels())
     if not measured:  # a voltage alone cannot show what the rig leaves out
-        notes = [*notes, "no temperature was logged: the uncertainty of the rig stays what it was"]
-    elif stated := uncertainties(keys, parameters, before=start.uncertainty, misfit=bool(why)):
+        notes = [*notes, str(Noticed("no-temperature"))]
+    elif stated := uncertainties(keys, parameters, before=start.uncertainty, misfit=why is not None):
         changes: dict[str, object] = {f"uncertainty.{key}": value for key, value in stated.items()}
         reason = {} if why else {"uncertainty.reason": reason_of(start, sources)}
         fitted = fitted.with_(**changes, **reason)
-    closing = (
-        *in_series(problem, solution),
-        *kept(unknown),
-        *((f"{why}, {NOT_NARROWED}",) if why and measured else ()),
-        *too_narrow(fitted.uncertainty, start.uncertainty),
-    )
+    last = closing(problem, solution, unknown, why if measured else None, before=start, fitted=fitted)
     return RigFit(
         fitted, parameters, correlation, channel_fits(problem, solution.theta), sources,
-        (*notes, *disagreed, *remarked, *closing), solution.converged, misfit,
+        (*notes, *map(str, (*disagreed, *remarked, *last))), solution.converged, misfit,
         tuple(layer.name for layer in start.skin.layers) if layers else (),
     )  # fmt: skip

@@ -10,7 +10,7 @@ from thermicon.base.numbers.arrays import Array
 
 from ..rig.faults import unit_of
 from ..rig.rig import Rig
-from .keys import CONTACT, value_of
+from .keys import value_of
 from .problem import FitProblem
 from .runs import Channel
 from .solve import Solution, covariance_of, inverse_of
@@ -167,23 +167,6 @@ def tellable(problem: FitProblem) -> tuple[str, ...]:
         ):
             told = dict(zip((*told, place), wide, strict=True))
     return tuple(problem.keys[k].key for k in told)
-
-
-def in_series(problem: FitProblem, solution: Solution) -> tuple[str, ...]:
-    """A sentence on contact and outermost layer in series, which a display without a current tells best."""
-    contact = [k for k, key in enumerate(problem.keys) if key.key == CONTACT]
-    if not (contact and problem.alone):
-        return ()
-    layer, rates = problem.rig.skin.layers[0], np.zeros(len(solution.theta))
-    factors, first = problem.factors(solution.theta), layer.thickness_m / layer.conductivity_W_per_mK
-    outer = first * math.exp(factors.get(("thickness", 0), 0.0) - factors.get(("conductivity", 0), 0.0))
-    rates[contact[0]] = math.exp(solution.theta[contact[0]])
-    for k, item in enumerate(problem.unknowns):
-        if item.place == 0 and item.kind in ("thickness", "conductivity"):
-            rates[k] = outer if item.kind == "thickness" else -outer
-    both, sd = float(rates[contact[0]]) + outer, float(np.sqrt(rates @ solution.covariance @ rates))
-    what = f"contact and {layer.name} in series have {both:.4g} m²·K/W ±{100 * T95 * sd / both:.2g} %"
-    return (f"the display is the drive: {what}",)
 
 
 def cures(problem: FitProblem, theta: Array, wanting: Sequence[int], correlation: Array) -> dict[int, str]:

@@ -1,20 +1,24 @@
-"""Remarks of a fit for the reader of its result.
+"""What a fit notices for the reader of its result.
 
 Of several causes of one misfit the first is named: a column that is late and explains it all, a fit that did not come
 to rest, a start that was not steady, and only then keys that are held fixed.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from thermicon.base.files.inputs import shipped_table
 from thermicon.base.numbers.arrays import Array
+from thermicon.base.words.number_text import signed
 
+from ..rig.rig import Rig
 from ..rig.uncertainty import Uncertainty
 from .between import MAD_TO_SD
-from .identify import FittedParameter
-from .keys import free_keys, possible_keys
+from .identify import T95, FittedParameter
+from .keys import CONTACT, free_keys, possible_keys
 from .problem import FitProblem, Unknown
 from .rig_fit import LARGEST, channel_fits
 from .runs import Channel
@@ -23,74 +27,71 @@ from .solve import Solution, covariance_of, huber, parts_of, solve
 EARLY_S, EARLY_TIMES, EARLY_NOISE = 2.0, 1.2, 5.0
 """A start that is not steady shows in the first seconds: residuals well above noise, and above those of the rest."""
 
-NO_MATCH = "the rig does not match the logs within their noise"
-
 OFFSET_SDS = 3.0
 """A sensor that is off by more than this many standard deviations of OFFSET_SD_K is named."""
 
 
+@dataclass(frozen=True, slots=True)
+class Noticed:
+    """A cause of ``data/fit-words.toml``, with the facts that its words name; as text, the sentence."""
+
+    cause: str
+    facts: Mapping[str, object] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        return str(shipped_table("fit-words.toml")[self.cause].format(**self.facts))
+
+
 def disagreement(
-    problem: FitProblem, solution: Solution, missed: Sequence[str], late: str, unknown: Sequence[FittedParameter]
-) -> tuple[tuple[str, ...], str]:
-    """Disagreements of rig and logs with a brief reason; `missed` and `late` are sentences on channels."""
+    problem: FitProblem, solution: Solution, missed: Sequence[Noticed], late: Noticed | None,
+    unknown: Sequence[FittedParameter],
+) -> tuple[tuple[Noticed, ...], Noticed | None]:  # fmt: skip
+    """Disagreements of rig and logs and the reason in brief; `missed` and `late` were noticed of channels."""
     if late:
-        return (late,), "the columns of a log are not of one time"
+        return (late,), Noticed("late-why")
     if not solution.converged:
-        return (*missed, "free fewer keys, so that the fit comes to rest"), "the fit did not come to rest"
+        return (*missed, Noticed("unrested")), Noticed("unrested-why")
     if not missed:
-        combined = _combined(problem, solution.theta, unknown) if unknown else ()
-        return combined, NO_MATCH if combined else ""
+        combined = bool(unknown) and _combined(problem, solution.theta, unknown)
+        return ((Noticed("combination"),), Noticed("no-match-why")) if combined else ((), None)
     if not beyond_noise(problem, solution.theta):
-        return tuple(missed), "the rig leaves something out of the logs"
+        return tuple(missed), Noticed("left-out-why")
     if unsteady(problem, solution.theta):
-        return tuple(missed), NO_MATCH
+        return tuple(missed), Noticed("no-match-why")
     keys = explaining(problem, solution)
-    cure = f"free {' or '.join(keys)} as well" if keys else "something that is not a key of the rig may be wrong"
-    return (*missed, f"intervals may be too narrow, since what is held fixed is taken as right: {cure}"), NO_MATCH
+    held = Noticed("held-keys", {"keys": " or ".join(keys)}) if keys else Noticed("held-others")
+    return (*missed, held), Noticed("no-match-why")
 
 
-def _combined(problem: FitProblem, theta: Array, unknown: Sequence[FittedParameter]) -> tuple[str, ...]:
-    """A sentence where keys that are not identified matter together, so that the rig that keeps them misses the log."""
+def _combined(problem: FitProblem, theta: Array, unknown: Sequence[FittedParameter]) -> bool:
+    """Whether keys that are not identified matter together, so that the rig that keeps them misses the log."""
     names = {item.key for item in unknown}
     places = [k for k, key in enumerate(problem.keys) if key.key in names]
     kept = theta.copy()
     kept[places] = problem.first[places]
-    if problem.predictions(kept) is not None and not beyond_noise(problem, kept):
-        return ()
-    return (
-        "the logs need another combination of the keys that are not identified, and the rig that keeps their values "
-        "misses the logs by more than their noise: leave one of them out of the free keys",
-    )
+    return problem.predictions(kept) is None or bool(beyond_noise(problem, kept))
 
 
-def remarks(problem: FitProblem, theta: Array, *, misfit: bool = False) -> tuple[str, ...]:
-    """Sentences on drives, starts, sensors and clocks; with a `misfit` an offset is a consequence and no fault."""
-    sentences = [
-        f"{run.name}: rows are {1e3 * run.step_s:.0f} ms apart, and the rig's driver may change every "
-        f"{1e3 / problem.rig.update_Hz:.0f} ms: what it did in between is not in the log, and intervals allow for it; "
-        f"log the drive at its own rate, or state that rate where it is slower (driver.update_Hz)"
+def remarks(problem: FitProblem, theta: Array, *, misfit: bool = False) -> tuple[Noticed, ...]:
+    """Of drives, starts, sensors and clocks; with a `misfit` an offset is a consequence and no fault."""
+    driver_ms = 1e3 / problem.rig.update_Hz
+    noticed = [
+        Noticed("points", {"run": run.name, "rows_ms": 1e3 * run.step_s, "driver_ms": driver_ms})
         for run in problem.runs
         if run.points
     ]
-    sentences += unsteady(problem, theta)
-    usual = f"more than the {problem.offset_sd_K:g} K (SD) that sensors are assumed to be"
+    noticed += unsteady(problem, theta)
     for channel, offset_K in far_off(problem, theta):
-        what, size = f"{channel.file}: {channel.column}", f"{offset_K:+.2f} K".replace("-", "−")
-        sentences.append(
-            f"{what} is fitted with an offset of {size}, {usual}; since the rig does not match the log, the offset may "
-            f"stand for what the rig has wrong: mend that before you doubt the sensor"
-            if misfit
-            else f"{what} reads {size} off, {usual}; calibrate it"
-        )
+        where = {"file": channel.file, "column": channel.column}
+        cause = "offset-of-misfit" if misfit else "offset"
+        noticed.append(Noticed(cause, {**where, "offset": signed(offset_K, "+.2f"), "sd_K": problem.offset_sd_K}))
     for r, run in enumerate(problem.runs):
         for clock, name in enumerate(run.clocks, 1):
-            shift = run.shifts[clock - 1] + problem.nuisance(theta, "shift", r, clock)
-            drift = problem.nuisance(theta, "drift", r, clock)
-            sentences.append(
-                f"{name}: its clock was shifted by {shift:.3f} s against {run.name}, and drifts by "
-                f"{drift * 1e6:.0f} parts per million".replace("-", "−")
-            )
-    return tuple(sentences)
+            shift_s = run.shifts[clock - 1] + problem.nuisance(theta, "shift", r, clock)
+            drift = 1e6 * problem.nuisance(theta, "drift", r, clock)
+            moved = {"shift": signed(shift_s, ".3f"), "drift": signed(drift, ".0f")}
+            noticed.append(Noticed("clock", {"file": name, "run": run.name, **moved}))
+    return tuple(noticed)
 
 
 def far_off(problem: FitProblem, theta: Array) -> list[tuple[Channel, float]]:
@@ -99,7 +100,7 @@ def far_off(problem: FitProblem, theta: Array) -> list[tuple[Channel, float]]:
     return [(channel, offset) for channel, offset in offsets if abs(offset) > OFFSET_SDS * problem.offset_sd_K > 0]
 
 
-def unsteady(problem: FitProblem, theta: Array) -> list[str]:
+def unsteady(problem: FitProblem, theta: Array) -> list[Noticed]:
     """Runs whose first seconds fit much worse than the rest."""
     names = []
     for each, (_, _, channel) in zip(channel_fits(problem, theta), problem.channels(), strict=True):
@@ -108,27 +109,51 @@ def unsteady(problem: FitProblem, theta: Array) -> list[str]:
         most = max(EARLY_TIMES * float(np.median(residual)), EARLY_NOISE * channel.noise, 1e-3)
         if channel.temperature and early.size and np.median(early) > most:
             names.append(each.run)
-    return [
-        f"{name}: the first {EARLY_S:g} s fit much worse than the rest: the rig was not steady at the first row; "
-        f"log a few seconds of rest first"
-        for name in dict.fromkeys(names)
-    ]
+    return [Noticed("unsteady", {"run": name, "early_s": EARLY_S}) for name in dict.fromkeys(names)]
 
 
-def kept(parameters: Sequence[FittedParameter]) -> tuple[str, ...]:
+def closing(
+    problem: FitProblem, solution: Solution, unknown: Sequence[FittedParameter], why: Noticed | None,
+    *, before: Rig, fitted: Rig,
+) -> tuple[Noticed, ...]:  # fmt: skip
+    """Of the fitted rig: what it keeps and states, and `why` its uncertainty is not narrowed."""
+    return (
+        *_in_series(problem, solution),
+        *_kept(unknown),
+        *((Noticed("not-narrowed", {"why": why}),) if why else ()),
+        *_too_narrow(fitted.uncertainty, before.uncertainty),
+    )
+
+
+def _in_series(problem: FitProblem, solution: Solution) -> tuple[Noticed, ...]:
+    """Contact and outermost layer in series, which a display without a current tells best."""
+    contact = [k for k, key in enumerate(problem.keys) if key.key == CONTACT]
+    if not (contact and problem.alone):
+        return ()
+    layer, rates = problem.rig.skin.layers[0], np.zeros(len(solution.theta))
+    factors, first = problem.factors(solution.theta), layer.thickness_m / layer.conductivity_W_per_mK
+    outer = first * math.exp(factors.get(("thickness", 0), 0.0) - factors.get(("conductivity", 0), 0.0))
+    rates[contact[0]] = math.exp(solution.theta[contact[0]])
+    for k, item in enumerate(problem.unknowns):
+        if item.place == 0 and item.kind in ("thickness", "conductivity"):
+            rates[k] = outer if item.kind == "thickness" else -outer
+    both, sd = float(rates[contact[0]]) + outer, float(np.sqrt(rates @ solution.covariance @ rates))
+    facts = {"layer": layer.name, "both": both, "percent": 100 * T95 * sd / both}
+    return (Noticed("in-series", facts),)
+
+
+def _kept(parameters: Sequence[FittedParameter]) -> tuple[Noticed, ...]:
     """Values that the fitted rig keeps from the rig before, since the logs do not determine them."""
     values = ", ".join(f"{item.key} = {item.start:.4g} {item.unit}".rstrip() for item in parameters)
-    return (f"not identified, so that the fitted rig keeps what the rig before had: {values}",) if values else ()
+    return (Noticed("kept", {"values": values}),) if values else ()
 
 
-def too_narrow(fitted: Uncertainty, before: Uncertainty) -> tuple[str, ...]:
-    """A sentence on uncertainties that reached the most a rig file may state."""
+def _too_narrow(fitted: Uncertainty, before: Uncertainty) -> tuple[Noticed, ...]:
+    """Uncertainties that reached the most a rig file may state."""
     most = [
         f"{key} = {limit:g}" for key, limit in LARGEST.items() if getattr(fitted, key) == limit > getattr(before, key)
     ]
-    if not most:
-        return ()
-    return (f"{', '.join(most)} is the most that a rig file may state, and too narrow here; do not export from it",)
+    return (Noticed("most", {"values": ", ".join(most)}),) if most else ()
 
 
 BEYOND = 2.0
@@ -143,29 +168,24 @@ LATE_SD_S, MOST_LATE_S, LEAST_LATE_S, LATE_SDS = 1.0, 5.0, 0.01, 5.0
 standard deviations of the delay itself."""
 
 
-def beyond_noise(problem: FitProblem, theta: Array, inflation: Sequence[float] = ()) -> tuple[str, ...]:
-    """A sentence on each channel whose residuals exceed its noise or, by the `inflation`, have a structure."""
-    sentences, noises = list[str](), [channel.noise for _, _, channel in problem.channels()]
+def beyond_noise(problem: FitProblem, theta: Array, inflation: Sequence[float] = ()) -> tuple[Noticed, ...]:
+    """Channels whose residuals exceed their noise or, by the `inflation`, have a structure."""
+    noticed, noises = list[Noticed](), [channel.noise for _, _, channel in problem.channels()]
     sizes = parts_of(problem, problem.residuals(theta, [max(noise, 1e-9) for noise in noises]))
     for place, (each, part) in enumerate(zip(channel_fits(problem, theta), sizes, strict=True)):
-        factor = inflation[place] if inflation else 1.0
-        structure = "neighbouring residuals are alike, so that the rig leaves something out"
+        factor, where = inflation[place] if inflation else 1.0, {"file": each.file, "column": each.column}
         if each.difference.size and MAD_TO_SD * float(np.median(np.abs(part))) > BEYOND:
-            sentences.append(
-                f"{each.file}: {each.column}: residuals of {milli(each.rms, each.unit)} rms exceed the log's own noise "
-                f"of {milli(noises[place], each.unit)}{f'; {structure}' if factor > ALIKE else ''}"
-            )
+            cause = "beyond-noise-alike" if factor > ALIKE else "beyond-noise"
+            by = {"rms": milli(each.rms, each.unit), "noise": milli(noises[place], each.unit)}
+            noticed.append(Noticed(cause, {**where, **by}))
         elif factor > ALIKE:
-            sentences.append(
-                f"{each.file}: {each.column}: {structure}; intervals are {math.sqrt(factor):.1f} times as wide "
-                f"as its noise alone would make them"
-            )
-    return tuple(sentences)
+            noticed.append(Noticed("alike", {**where, "times": math.sqrt(factor)}))
+    return tuple(noticed)
 
 
-def late_column(problem: FitProblem, solution: Solution) -> str:
-    """On the column whose delay explains the residuals best, if any; a step of Gauss and Newton tells which to fit."""
-    best, sentence = np.inf, ""
+def late_column(problem: FitProblem, solution: Solution) -> Noticed | None:
+    """The column whose delay explains the residuals best, if any; a step of Gauss and Newton tells which to fit."""
+    best, noticed = np.inf, None
     for r, c, channel in problem.channels():
         if channel.clock or len(problem.runs[r].channels) == 1:
             continue
@@ -182,12 +202,10 @@ def late_column(problem: FitProblem, solution: Solution) -> str:
         known = problem.runs[r].unknown is None  # else columns may share no instant
         least = LEAST_LATE_S if known else problem.runs[r].step_s
         if explained and abs(late) > max(least, LATE_SDS * sd) and left < best:
-            best, word = left, "late" if late > 0 else "early"
-            sentence = (
-                f"{channel.column} of {channel.file} is {abs(late):.2g} s {word} against the other columns, which "
-                f"makes values and intervals wrong: save it with time_s as a file of its own; its clock is then fitted"
-            )
-    return sentence
+            where = {"file": channel.file, "column": channel.column}
+            best, side = left, "late" if late > 0 else "early"
+            noticed = Noticed("late", {**where, "size_s": abs(late), "side": side})
+    return noticed
 
 
 def explaining(problem: FitProblem, solution: Solution) -> list[str]:

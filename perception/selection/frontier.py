@@ -22,7 +22,7 @@ from ..identification.new_laboratory import DRAWS
 from ..identification.population import run_end_s
 from ..kernels.parallel import Progress, step_counter
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords, ObserverModel
-from ..ranking.batches import FeltResult, Job, felt_by_people
+from ..ranking.batches import Job, felt_by_people
 from ..ranking.rank import rank
 from ..ranking.ranking import Ranking
 from .choose import Choice, Chooser
@@ -187,32 +187,39 @@ def frontier(
     chooser = Chooser(job, crowd.model, asked, wanted)
     sizes = range(2, min(most, len(job.icons)) + 1)
     step = step_counter(progress, job.batches + len(sizes) * (1 + draws))
-
-    def judged(felt: FeltResult, draws: int, step: Callable[[], None], restarts: int = RESTARTS) -> Frontier:
-        chooser.feel(felt)
-        points: list[Choice] = []
-        for count in sizes:
-            choice = (
-                chooser.best(count, draws, step, restarts, restarts == ROUGH_RESTARTS)
-                if count <= len(chooser.pool)
-                else None
-            )
-            if choice is None:  # nor will more keep the limits
-                break
-            points.append(choice)
-        for _ in range((len(sizes) - len(points)) * (1 + draws)):
-            step()
-        if not points:
-            raise ChoiceError(chooser.pool.nothing_fits(asked))
-        outcome = SetOutcome.of_pool(chooser.whole, felt)
-        goals = () if wanted is None else tuple(judge_goal(wanted, outcome, point) for point in points)
-        people = len(felt.pairs)
-        own = replace(job, people=people)
-        return Frontier(icons, own, crowd.model, tuple(points), goals, draws, chooser.whole.amber, people < job.people)
-
     for felt in felt_by_people(job, PEOPLE, step):
+        chooser.feel(felt)
         if len(felt.pairs) == job.people:
-            return judged(felt, draws, step)
+            return _judged(icons, chooser, _choices(chooser, sizes, draws, step), draws)
         if rough is not None:
-            rough(judged(felt, min(draws, ROUGH_DRAWS), lambda: None, ROUGH_RESTARTS))
+            few = min(draws, ROUGH_DRAWS)
+            rough(_judged(icons, chooser, _choices(chooser, sizes, few, lambda: None, ROUGH_RESTARTS), few))
     raise AssertionError("the last are all people")
+
+
+def _choices(
+    chooser: Chooser, sizes: range, draws: int, step: Callable[[], None], restarts: int = RESTARTS
+) -> tuple[Choice, ...]:
+    """The best choice of each size until none keeps the limits; `step` is called as often as for all sizes."""
+    choices: list[Choice] = []
+    for count in sizes:
+        choice = None
+        if count <= len(chooser.pool):
+            choice = chooser.best(count, draws, step, restarts, restarts == ROUGH_RESTARTS)
+        if choice is None:  # nor will more keep the limits
+            break
+        choices.append(choice)
+    for _ in range((len(sizes) - len(choices)) * (1 + draws)):
+        step()
+    if not choices:
+        raise ChoiceError(chooser.pool.nothing_fits(chooser.asked))
+    return tuple(choices)
+
+
+def _judged(icons: IconSet, chooser: Chooser, choices: tuple[Choice, ...], draws: int) -> Frontier:
+    """The choices of a pool, each judged by the goal, for the people whom the chooser chose by."""
+    job, goal, people = chooser.job, chooser.goal, len(chooser.felt.pairs)
+    outcome = SetOutcome.of_pool(chooser.whole, chooser.felt)
+    goals = () if goal is None else tuple(judge_goal(goal, outcome, choice) for choice in choices)
+    own, amber = replace(job, people=people), chooser.whole.amber
+    return Frontier(icons, own, chooser.model, choices, goals, draws, amber, people < job.people)
