@@ -24,6 +24,8 @@ LONG = (
     "(timing.gap_s, or more timing.carry_over_d_prime), or part the icons or blocks into two studies"
 )
 """Attention and answers suffer in sessions of more than an hour; ways to a shorter one."""
+WORTH_DRAWS = 100
+"""Laboratories that are simulated to say what answers could tell."""
 KEPT = "give another folder with -o, such as -o study-2"
 
 
@@ -56,7 +58,7 @@ def study_command(
         note("nothing was written", always=True)
         raise typer.Exit(REFUSED) from None
     publish(files, folder, how=KEPT)
-    for line in report_lines(plan):
+    for line in (*report_lines(plan), *worth_lines(plan)):
         typer.echo(line)
     note(f"wrote {len(files)} files into {folder}")
     note(CAUTION)
@@ -122,6 +124,28 @@ def report_lines(plan: Plan) -> list[str]:
         blocks_from_rest = "with each block from rest, as after a long break"
         lines.append(f"            (orders without their breaks); {blocks_from_rest}: {' and '.join(colours)}")
     return [*lines, *(f"  caution   {text}" for text in cautions)]
+
+
+def worth_lines(plan: Plan) -> list[str]:
+    """What its answers could tell of the laboratory, where icons are named; and the measurement that tells most."""
+    from thermicon.perception.pilot.plan import plan as planned
+
+    from ..study.build import plays_of
+    from ..study.study_file import labels_of
+
+    study, icons = plan.materials.study, plan.materials.chosen
+    people, plays = len(labels_of(study)), plays_of(study, len(icons))
+    if not study.trials or len(icons) < 2 or people < 2:
+        return []
+    with progress_bar("simulating laboratories") as progress:
+        expected = planned(
+            icons, plan.materials.rig, participants=[people], trials=[plays], draws=WORTH_DRAWS, progress=progress
+        )
+    answers, measured = expected.designs[0].narrower, expected.worth[0]
+    return [
+        f"  worth     its answers make the 95 % of laboratories of the per cent named {answers:.1f} times narrower, at "
+        f"most; {measured.data} {measured.narrower:.2f} times"
+    ]
 
 
 def _gap_rows(plan: Plan) -> list[str]:

@@ -12,11 +12,29 @@ from .blocks import Block, Grid, Text, grid
 if TYPE_CHECKING:
     from thermicon.perception.pilot.plan import ExperimentPlan, ExperimentSize
 
+NOTEWORTHY = 1.02
+"""Data that makes an interval hardly narrower is not listed."""
+
 
 def plan_report(found: ExperimentPlan, names: Sequence[str]) -> list[Block]:
     """Report predictions, designs, and the one to take."""
     predicted, designed = (Text("\n".join(lines)) for lines in (prediction_lines(found, names), design_lines(found)))
-    return [predicted, designs_table(found), designed]
+    return [predicted, designs_table(found), designed, *worth_blocks(found)]
+
+
+def worth_blocks(found: ExperimentPlan) -> list[Block]:
+    """What each kind of data could tell of a laboratory before anything is measured, and which pair tells most."""
+    wanted = "per cent named" if found.difference is None else "difference"
+    design = found.cheapest or max(found.designs, key=lambda each: each.narrower)
+    answers = f"answers of {design.participants} participants, {design.trials} trials each"
+    rows = [(answers, f"{design.narrower:.1f}"), *((each.data, f"{each.narrower:.2f}") for each in found.worth)]
+    rows = [row for row in rows if float(row[1]) >= NOTEWORTHY]
+    one, other = found.worst_pair
+    return [
+        Text(f"How many times narrower data makes the 95 % of laboratories of the {wanted}, at most:"),
+        grid(("data", "narrower"), rows, ("narrower",)),
+        Text(f"{one} and {other} are confused most: shown in half of the trials, their pair needs half as many."),
+    ]
 
 
 def prediction_lines(found: ExperimentPlan, names: Sequence[str]) -> list[str]:

@@ -27,6 +27,7 @@ from .observed import LEAST_DRAWS
 from .playing import Confusions, laboratories_for, stage
 from .prediction import SetPrediction, Three, three
 from .states import LaboratoryPrior
+from .worth import Worth, narrower, worth_of
 
 DRAWS, EXPERIMENTS = 300, 600
 PARTICIPANTS, TRIALS = (4, 8, 12, 16, 24, 32, 48), (12, 24, 48, 96)
@@ -41,18 +42,21 @@ class ExperimentSize:
     """An experiment of so many participants and trials (each, of each set), and what it is expected to give.
 
     `width` is that of the 95 % interval of the proportion named, or of the difference of two sets, which a share
-    `found` of experiments distinguishes in the right direction, and `wrong` in the other.
+    `found` of experiments distinguishes in the right direction, and `wrong` in the other. The answers make the interval
+    of the laboratory `narrower`, at most so many times.
     """
 
     participants: int
     trials: int
     width: float
+    narrower: float
     found: float | None = None
     wrong: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
         own = {"participants": self.participants, "trials": self.trials, "interval_width": self.width}
+        own["narrower"] = self.narrower
         return own if self.found is None else {**own, "found": self.found, "wrong": self.wrong}
 
 
@@ -70,12 +74,18 @@ class ExperimentPlan(Tabled):
         All of them, by participants and trials.
     wanted
         What was asked for: the power of two sets, or the width of the interval of one.
+    worth
+        What measurements could narrow the proportion named of a laboratory, or the difference, the most first.
+    worst_pair
+        The two icons of the first set that are confused most often, whose trials tell most of it.
     """
 
     predictions: tuple[SetPrediction, ...]
     difference: Three | None
     designs: tuple[ExperimentSize, ...]
     wanted: float
+    worth: tuple[Worth, ...]
+    worst_pair: tuple[str, str]
     rig: str
     rig_changes: tuple[str, ...]
     memory: str
@@ -107,6 +117,8 @@ class ExperimentPlan(Tabled):
             "difference": None if self.difference is None else list(self.difference),
             "wanted": {"power" if self.difference is not None else "interval_width": self.wanted},
             "designs": [each.to_dict() for each in self.designs],
+            "worth": [asdict(each) for each in self.worth],
+            "worst_pair": list(self.worst_pair),
             "cheapest": None if cheapest is None else cheapest.to_dict(),
         }
 
@@ -188,6 +200,9 @@ def plan(
     stages = [stage(each, rig, prior, seed=seed, tracking=crowd.tracking) for each in sets]
     played = [each.confusions(laboratories, step) for each in stages]
     apart = None if other is None else played[0].correct - played[1].correct
+    pooled: Array = played[0].pooled.mean(axis=0)
+    confused = np.triu(pooled + pooled.T, k=1)
+    first, second = np.unravel_index(confused.argmax(), confused.shape)
     designs = []
     for k, people in enumerate(participants):
         for j, times in enumerate(trials):
@@ -198,6 +213,8 @@ def plan(
         difference=None if apart is None else three(apart),
         designs=tuple(designs),
         wanted=wanted if wanted is not None else (WIDTH if other is None else POWER),
+        worth=worth_of(prior, laboratories, played[0].correct if apart is None else apart),
+        worst_pair=(played[0].icons[first], played[0].icons[second]),
         rig=rig.name,
         rig_changes=rig.changes,
         memory=crowd.memory,
@@ -231,15 +248,17 @@ def _simulated(played: Sequence[Confusions], people: int, trials: int, seed: np.
     shares = [_shares(one, where, invited, trials, rng) for one in played]
     each = shares[0] if len(shares) == 1 else shares[0] - shares[1]
     half = float(t.ppf(0.975, people - 1)) * each.std(axis=1, ddof=1) / np.sqrt(people)
+    truth = played[0].correct if len(played) == 1 else played[0].correct - played[1].correct
+    middle = each.mean(axis=1)
+    off = float(np.mean((middle - truth[where]) ** 2))
+    known = narrower(float(truth.var()) / (float(truth.var()) + off))
     if len(shares) == 1:
-        middle = each.mean(axis=1)
         width = np.minimum(middle + half, 1.0) - np.maximum(middle - half, 0.0)
-        return ExperimentSize(people, trials, float(width.mean()))
-    truth = (played[0].correct - played[1].correct)[where]
-    shown = np.abs(each.mean(axis=1)) > half
-    right = np.sign(each.mean(axis=1)) == np.sign(truth)
+        return ExperimentSize(people, trials, float(width.mean()), known)
+    shown = np.abs(middle) > half
+    right = np.sign(middle) == np.sign(truth[where])
     width, found, wrong = (2.0 * half).mean(), (shown & right).mean(), (shown & ~right).mean()
-    return ExperimentSize(people, trials, float(width), float(found), float(wrong))
+    return ExperimentSize(people, trials, float(width), known, float(found), float(wrong))
 
 
 def _shares(

@@ -49,10 +49,10 @@ NOTEWORTHY = 0.02
 """Measurements that would take away less of the variance are not named as the first to make."""
 
 
-def load_measurements() -> Mapping[str, tuple[str, ...]]:
-    """Possible measurements of a laboratory, with the constants, by name, that each would determine."""
+def load_measurements(of_pilots: bool = False) -> Mapping[str, tuple[str, ...]]:
+    """Measurements of a laboratory, or those that a pilot takes, with the constants, by name, that each determines."""
     rows = tomllib.loads((DATA / "measurements.toml").read_text("utf-8"))["measurement"]
-    return {row["text"]: tuple(row["constants"]) for row in rows}
+    return {row["text"]: tuple(row["constants"]) for row in rows if not of_pilots or row.get("pilot")}
 
 
 def base_name(constant: str) -> str:
