@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 from thermicon.base.numbers.arrays import Array
 
+from ..observer.channels import CHANNELS
 from ..ranking.assumptions import explained_together
 from ..ranking.sensitivity import load_measurements
-from .states import OFFSETS, Laboratories, LaboratoryPrior
+from .states import Laboratories, LaboratoryPrior
 
 MOST_KNOWN = 0.99
 """A regression on some hundred draws cannot claim more of a variance."""
@@ -36,7 +37,7 @@ def worth_of(prior: LaboratoryPrior, laboratories: Laboratories, wanted: Array) 
     ('reaction times and false alarms to changes well above threshold', 10)
     """
     values = prior.values(laboratories)
-    names = [name.removeprefix("sensitivity of the ") if name in OFFSETS else name for name in prior.names]
+    names = [*prior.names[: -len(CHANNELS)], *(f"laboratory, {channel}" for channel in CHANNELS)]
     kinds = []
     for data, constants in load_measurements(of_pilots=True).items():
         columns = [place for place, name in enumerate(names) if name in constants]

@@ -63,10 +63,12 @@ def test_the_star_of_a_plan_stands_at_sizes_that_are_enough(
 ) -> None:
     """Of one set the width of the interval counts, of two the power."""
     sizes = tuple(
-        ExperimentSize(10, trials, width, power)
+        ExperimentSize(10, trials, width, 1.5, power)
         for trials, width, power in zip((24, 48), (0.12, 0.08), found, strict=True)
     )
-    plan = ExperimentPlan((), None, sizes, 0.1 if found[0] is None else 0.8, "thenar", (), "episodes", 0, 8, "0")
+    plan = ExperimentPlan(
+        (), None, sizes, 0.1 if found[0] is None else 0.8, (), ("a", "b"), "thenar", (), "episodes", 0, 8, "0"
+    )
     (row,) = designs_table(plan).rows
     assert ["*" in cell.text for cell in row[1:]] == starred
 
