@@ -1,4 +1,4 @@
-"""Unsaved text of all editors of a cue file, in one hidden file beside it."""
+"""Unsaved text of all editors of a cue file in one hidden file beside it."""
 
 import os
 import secrets

@@ -1,4 +1,4 @@
-"""Spans of what the experiments behind the constants varied, from what they play.
+"""Spans of what the experiments behind the constants play.
 
 A laboratory that writes down what is played in it runs each experiment once, so that a row with other conditions moves
 a span by itself.

@@ -1,4 +1,4 @@
-"""The chain from what reaches the receptors to what is said of it, each stage a call of its mechanism.
+"""The chain from what reaches the receptors to a sensation as calls of its mechanisms.
 
 A fall of temperature at depth (`Tissue`) becomes a drive above the adapted level within the limits of quality
 (`Adaptation`, `Bounds`), the drive multiples of a threshold that depends on area, site, age and presentation

@@ -1,4 +1,4 @@
-"""What data could tell of a laboratory, before anything is measured."""
+"""The worth of data about a laboratory before anything is measured."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the data end, with a warning for an icon that lies outside.
+"""Warnings for icons outside the published data and outside what the evidence varied.
 
 What the evidence varied stands in `data/spans.csv`, which ``python -m thermicon.perception.evidence observer`` writes;
 limits that it does not say are records of `data/coverage.toml`.
