@@ -91,6 +91,9 @@ def test_sampling_makes_draws_of_the_shipped_distribution_from_their_seed(tmp_pa
     assert (own.names, own.draws.shape) == (shipped.names, shipped.draws.shape)
     assert (own.header.evidence, own.header.priors) == (shipped.header.evidence, shipped.header.priors)
     spread = shipped.draws.std(axis=0)
-    # With 400 effective draws each, means differ by 0.07 of the spread (1 SD), spreads by 5 %.
+    # With 400 effective draws each, means differ by 0.07 of the spread (1 SD), widths of intervals by 5 %.
     assert (np.abs(own.draws.mean(axis=0) - shipped.draws.mean(axis=0)) / spread).max() < 0.35
-    assert np.abs(np.log(own.draws.std(axis=0) / spread)).max() < 0.3
+    # Not the SD: the slope of sensation has a tail of which a few draws decide it.
+    ends = (np.quantile(each.draws, (0.05, 0.95), axis=0) for each in (own, shipped))
+    own_width, shipped_width = (high - low for low, high in ends)
+    assert np.abs(np.log(own_width / shipped_width)).max() < 0.3
