@@ -1,4 +1,4 @@
-"""Bounds for every control loop around a module.
+"""Checks of a module under every control loop that may play it.
 
 The skin moves fastest where a loop swings from one cut-off to the other at its current limits. Every temperature of
 skin lies between those of a display held at either cut-off for as long as the second one allows, since more heat in
@@ -86,18 +86,20 @@ class AnyLoop:
                 return limits_A, checks
         cure = f", as its set-points need; a driver.current_limit_A of {alike_A:g} A slows them"
         return given, tuple(
-            replace(check, run=replace(check.run, way=f"{check.run.way}{cure}")) for check in self.checks(cut, given)
+            replace(check, run=replace(check.run, way=f"{check.run.way}{cure}"))
+            for check in self.checks(cut, self.ends(cut), given)
         )
 
     def slowed(self, cut: CutOff, given: Limits_A) -> tuple[Limits_A, tuple[Check, ...]]:
         """Current limits that come down from others until no loop passes a limit, as far as tried, and the checks."""
-        limits_A, checks = given, self.checks(cut, given)
+        ends, limits_A = self.ends(cut), given
+        checks = self.checks(cut, ends, limits_A)
         for _ in range(TRIES):
             below, above = too_wide(checks)
             if max(below, above) <= 1.0:
                 break
             limits_A = -_whole_A(-limits_A[0] / max(1.0, below)), _whole_A(limits_A[1] / max(1.0, above))
-            checks = self.checks(cut, limits_A)
+            checks = self.checks(cut, ends, limits_A)
         return limits_A, checks
 
     def suffices(self, limits_A: Limits_A, plays: Sequence[Samples], shown_C: Sequence[Array]) -> bool:
@@ -115,17 +117,20 @@ class AnyLoop:
         rest, goals = rest_of_a_loop(rig, float(play.command[0])), updates_of(play, 1.0 / rig.driver.update_Hz)
         return regulated(rig, self.within(limits_A), goals, rest)[1]
 
-    def checks(self, cut: CutOff, limits_A: Limits_A) -> tuple[Check, ...]:
-        """What any loop within current limits leads to: rates of skin, the hot plate, and where a display stays."""
-        rates, hot_plate = self.rates(cut, limits_A), self._hot_plate(cut, limits_A[1])
+    def checks(self, cut: CutOff, ends: tuple[State, State], limits_A: Limits_A) -> tuple[Check, ...]:
+        """What any loop within current limits leads to: rates of skin, the hot plate, and where a display stays.
+
+        `ends` are those of the cut-off, which are the same for all limits.
+        """
+        rates, hot_plate = self.rates(cut, ends, limits_A), self._hot_plate(cut, ends, limits_A[1])
         return (*rates, *hot_plate, self._for_good(cut, limits_A[1]))
 
-    def rates(self, cut: CutOff, limits_A: Limits_A) -> tuple[Check, ...]:
+    def rates(self, cut: CutOff, ends: tuple[State, State], limits_A: Limits_A) -> tuple[Check, ...]:
         """Rates of skin under a loop that swings between the cut-offs, or goes from one to a limit and stays there."""
         ensemble = self.module.ensemble
         way = f"under any loop of {limits_A[0]:g} … {limits_A[1]:g} A".replace("-", "−")
         runs = [(self._swinging(cut, limits_A), ensemble.at_rest(0.0))]
-        for end, limit_A in zip(self.ends(cut), limits_A, strict=True):
+        for end, limit_A in zip(ends, limits_A, strict=True):
             stuck: Array = np.linspace(0.0, STUCK_S, 2)
             runs.append((LaneDrives(stuck, np.full((len(ensemble.lanes), 2), limit_A)), end))
         judged = []
@@ -155,16 +160,16 @@ class AnyLoop:
         turned_A = -limits_A[1], -limits_A[0]
         if turned_A == limits_A:
             return ()
-        rates = self.rates(cut, turned_A)
+        rates = self.rates(cut, self.ends(cut), turned_A)
         told = {"rate": max(abs(check.value) for check in rates), "kept": False, "limit_A": limits_A}
         return () if all(check.passed for check in rates) else (SingleFault("swapped fast", "red", told),)
 
-    def _hot_plate(self, cut: CutOff, limit_A: float) -> tuple[Check, ...]:
+    def _hot_plate(self, cut: CutOff, ends: tuple[State, State], limit_A: float) -> tuple[Check, ...]:
         """The hot plate of a driver stuck at its limit until the lower cut-off has acted.
 
         It begins with every node as warm as in any display inside the cut-offs.
         """
-        ensemble, (cold, warm) = self.module.ensemble, self.ends(cut)
+        ensemble, (cold, warm) = self.module.ensemble, ends
         warmest = replace(warm, nodes_C=np.maximum(cold.nodes_C, warm.nodes_C))
         values, _ = ensemble.hold(limit_A, warmest, HANG_ROWS_S)
         out = values[WATCHED.index("display_C")] < cut.low - SENSOR_K
@@ -198,9 +203,10 @@ class AnyLoop:
         is used.
         """
         begun = [self.stayed(stages) for stages in every]
+        narrow_A = narrowed_A(limits_A, used_A)
         for reaction_s in REACTIONS_S:
             for stages, states in zip(every, begun, strict=True):
-                for within_A in (limits_A, narrowed_A(limits_A, used_A)):
+                for within_A in (limits_A, narrow_A):
                     checks = self.stuck(states, within_A, reaction_s, may)
                     if all(check.passed for check in checks):
                         return CutOff(*stages.ends_C, reaction_s), stages, within_A, checks

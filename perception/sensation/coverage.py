@@ -97,12 +97,15 @@ def outside_data(trace: Trace) -> tuple[str, ...]:
         ("the warm receptor", trace.warm_receptor_C),
     )
     found = [*_temperatures(table.one("temperature"), places, trace.time_s), *_rates(table.one("rate"), places, trace)]
-    return (*_setting(float(trace.skin_C[0]), trace.area_m2, trace.site), *_course(trace), *found)
+    spans = load_spans()
+    setting = _setting(spans, float(trace.skin_C[0]), trace.area_m2, trace.site)
+    return (*setting, *_course(spans, trace), *found)
 
 
 def outside_setting(baseline_C: float | None, rig: Rig) -> tuple[str, ...]:
     """A sentence on rest, contact and site, where no experiment had them; None: skin rests as the rig has it."""
-    return _setting(rig.skin.rest_C if baseline_C is None else baseline_C, rig.contact.area_m2, rig.site)
+    rest_C = rig.skin.rest_C if baseline_C is None else baseline_C
+    return _setting(load_spans(), rest_C, rig.contact.area_m2, rig.site)
 
 
 def outside_age(age_years: float) -> tuple[str, ...]:
@@ -110,15 +113,14 @@ def outside_age(age_years: float) -> tuple[str, ...]:
     return _joined(load_spans()["age"].outside(age_years, "people are aged"))
 
 
-def _setting(rest_C: float, area_m2: float, site: str) -> tuple[str, ...]:
-    spans = load_spans()
+def _setting(spans: Mapping[str, EvidenceSpan], rest_C: float, area_m2: float, site: str) -> tuple[str, ...]:
     rest = spans["rest"].outside(rest_C, "the skin rests at", REST_SLACK_K)
     return _joined(rest, spans["area"].outside(area_m2 / CM2, "the contact is"), *outside_site(site))
 
 
-def _course(trace: Trace) -> tuple[str, ...]:
+def _course(spans: Mapping[str, EvidenceSpan], trace: Trace) -> tuple[str, ...]:
     """A sentence on the duration, the size and the rate of what is played, where no experiment had them."""
-    spans, course = load_spans(), trace.current_A if trace.control == "current" else trace.target_C
+    course = trace.current_A if trace.control == "current" else trace.target_C
     changes = np.flatnonzero(np.diff(course))
     if not changes.size:
         return ()

@@ -1,4 +1,4 @@
-"""Skin that rests elsewhere: one felt change for every question, and no quality that was not played."""
+"""Thresholds and the quality that is reported where skin rests warmer or colder than in the experiments."""
 
 import os
 
