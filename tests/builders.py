@@ -19,7 +19,7 @@ from thermicon.perception import Observer, Percept
 from thermicon.perception.identification.episodes import episode_distances, remembered
 from thermicon.perception.identification.population import memory_dprime
 from thermicon.perception.identification.task import USUAL
-from thermicon.perception.observer.channels import USUAL_MEMORY
+from thermicon.perception.observer.channels import MEMORY_FORMS
 from thermicon.perception.observer.people import People
 from thermicon.perception.selection.appraise import population_response
 
@@ -28,7 +28,7 @@ def population_dprime(icons: Sequence[Icon], rig: Rig, crowd: People) -> NDArray
     """Pairwise d′ (people, icons, icons) from memory, by the shipped observer."""
     nominal = Observer.load()
     felt, _ = population_response(icons, rig, crowd, observer=nominal)
-    return memory_dprime(felt, USUAL_MEMORY, crowd.memory, nominal, USUAL)
+    return memory_dprime(felt, MEMORY_FORMS[0], crowd.memory, nominal, USUAL)
 
 
 def messages(beside: str, name: str = "messages.toml") -> dict[str, Any]:

@@ -191,7 +191,10 @@ class ObserverOptions(Options):
             help="What every virtual person receives: same current, display or skin temperature.  [default: by control]"
         ),
     ] = None
-    memory: Annotated[Literal["episodes", "naming"], typer.Option(help="Form of memory.")] = "episodes"
+    memory: Annotated[
+        Literal["both", "episodes", "naming"],
+        typer.Option(help="Form of memory; both: a laboratory has either."),
+    ] = "both"
     observer: Annotated[
         Path | None,
         opt(

@@ -52,14 +52,14 @@ class RankedBy(CrowdOptions):
     """Virtual people with a form of memory, or the rules of the literature, which have no draws."""
 
     memory: Annotated[
-        Literal["episodes", "naming", "rules"],
-        typer.Option("--memory", "--by", help="Form of memory; rules: rules of thumb instead of virtual people."),
-    ] = "episodes"  # type: ignore[assignment]  # one more than other commands know
+        Literal["both", "episodes", "naming", "rules"],
+        typer.Option("--memory", "--by", help="Form of memory, or rules of thumb instead of virtual people."),
+    ] = "both"  # type: ignore[assignment]  # one more than other commands know
 
     @property
     def asked(self) -> dict[str, Any]:
         """Arguments of `rank`, whose result has the rules' scores whatever is remembered."""
-        return {**super().asked, "memory": "episodes"} if self.memory == "rules" else super().asked
+        return {**super().asked, "memory": "both"} if self.memory == "rules" else super().asked
 
     def draws(self, model: ObserverModel) -> int:
         """The number of draws."""

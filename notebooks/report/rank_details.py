@@ -82,7 +82,7 @@ def crowd_text(ranking: Ranking | Sensitivity) -> str:
 
 def caveat(ranking: Ranking) -> str:
     """Return the sentences that state what the numbers rest on and what they are not."""
-    memory = "" if ranking.memory == "episodes" else f", memory: {ranking.memory}"
+    memory = "" if ranking.memory == "both" else f", memory: {ranking.memory}"
     gap_s = ranking.task.gap_s
     gap = "" if gap_s is None else f", {gap_s:g} s between icons"
     return (
@@ -126,22 +126,24 @@ def _range(ranking: Ranking, interval: str) -> str:
 
 
 def memory_points(ranking: Ranking) -> Iterator[str]:
-    """Yield the change of order with the other form of memory; nothing for one icon."""
-    for form, share in ranking.memory_sensitivity.items() if ranking.pairs else ():
-        changes = ranking.memory_changes[form]
-        if not changes:
-            order = "same order"
-        else:
-            more = f" ({count_of(len(changes) - 1, 'more change')} of order)" if len(changes) > 1 else ""
-            order = f"{changes[0][1]} then ranks before {changes[0][0]}{more}"
-        told = f"{percent(share)} named, {order}"
-        yield f"with the other form of memory ({form}): {told}; no data settle which of the two is right"
+    """Yield what each form of memory predicts, and the change of order; nothing for one icon or one form."""
+    if not ranking.pairs or len(ranking.by_form) == 1:
+        return
+    shares = ", ".join(f"{percent(share)} with {form}" for form, share in ranking.by_form.items())
+    changes = ranking.form_changes
+    if not changes:
+        order = "the same order"
+    else:
+        more = f" ({count_of(len(changes) - 1, 'more change')} of order)" if len(changes) > 1 else ""
+        order = f"with the second, {changes[0][1]} ranks before {changes[0][0]}{more}"
+    yield f"form of memory: {shares}; {order}; no data settle which of the two is right, and d′ are those of the first"
 
 
 def carried_points(ranking: Ranking) -> Iterator[str]:
     """Yield which icon is changed most by the icon before it; nothing where all carry-over has faded."""
     if left := ranking.carry_over:
-        worst = [left.worst_of(place, ranking.memory, ranking.task.counted) for place in range(len(ranking.icons))]
+        form, counted = ranking.job.forms[0], ranking.task.counted
+        worst = [left.worst_of(place, form, counted) for place in range(len(ranking.icons))]
         d_prime, name, before = max((d, name, before) for name, (before, d) in zip(ranking.labels, worst, strict=True))
         after = "a first play of itself" if before == name else before
         yield f"carry-over: largest for {name} after {after}, d′ {number(d_prime)} from {name} alone"

@@ -15,7 +15,6 @@ from thermicon.icons import Icon
 from thermicon.perception.identification.carry_over import carry_over
 from thermicon.perception.identification.population import TAIL_S
 from thermicon.perception.kernels.parallel import step_counter
-from thermicon.perception.observer.channels import MEMORY_FORMS, USUAL_MEMORY
 
 from .study_file import StudyError, Timing
 
@@ -55,7 +54,7 @@ def carried_over(icons: Sequence[Icon], rig: Rig, gap_s: float, held: bool) -> t
     """Largest d′ by which an icon differs from itself alone, after which icon, and which one it is."""
     end_s = max(duration_s(icon, rig) for icon in icons) + TAIL_S
     left = carry_over(icons, rig, end_s, gap_s, tracking=None if held else "replay")
-    d_prime = left.apart[MEMORY_FORMS.index(USUAL_MEMORY)]
+    d_prime = left.apart[0]
     before, after = divmod(int(d_prime.argmax()), len(icons))
     return float(d_prime.max()), (icons[before].name, icons[after].name)
 

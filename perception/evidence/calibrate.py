@@ -74,7 +74,7 @@ def _taken_over(known: RecordTable) -> tuple[Record, ...]:
     """Records that enter as they are, under the observer's own names."""
     zone, area = known.one("complete adaptation"), known.one("thermode area of the forced-choice thresholds")
     (neutral, reference), (low, high) = names_of(Observer, "neutral_C", "reference_area_m2"), zone.interval
-    same = "path_hand_m", "path_forearm_m", "lapse", "rated_share", "missing_cost", "episode_bar"
+    same = "path_hand_m", "path_forearm_m", "lapse", "rated_share", "missing_cost", "episode_bar", "pair_spread"
     return (
         replace(zone, quantity=neutral, low=low, high=high),
         replace(area, quantity=reference),

@@ -18,20 +18,22 @@ from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
 from thermicon.icons import Icon
 
-from ..identification.confusion import SAMPLES, normalised
+from ..identification.confusion import SAMPLES, few_named, normalised
 from ..identification.depths import rungs
-from ..identification.laboratory_draws import EVERY, people_for_intervals
+from ..identification.laboratory_draws import EVERY, DrawnLaboratory, people_for_intervals
 from ..identification.laboratory_draws import SAMPLES as FEW_SAMPLES
 from ..identification.measures import information_bits, plugin_bits, proportion_correct
+from ..identification.pairs import pair_scores, with_pairs
 from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond, run_end_s
 from ..identification.skin_alone import confused_by_skin
 from ..kernels.parallel import in_order
-from ..observer.channels import CHANNELS, USUAL_MEMORY, Variable, receptor_column
+from ..observer.channels import CHANNELS, MEMORY_FORMS, Variable, receptor_column
 from ..observer.observer import Observer
 from ..observer.people import People, draw_people
 from ..ranking.batches import EXPERIMENTS
 from .predicted import Predicted, interval_of, plausible_laboratories
 
+FORMS = "both forms of memory"
 Score = Callable[[Array], float]
 """One number from the confusions (people, icons, icons) of a crowd."""
 
@@ -55,7 +57,7 @@ class VariantConfusions:
     @property
     def said(self) -> str:
         """The conditions of its predictions."""
-        return f"named from memory, {self.probability.shape[0]} people, {USUAL_MEMORY}"
+        return f"named from memory, {self.probability.shape[0]} people, {FORMS}"
 
     def predicted(
         self, experiment: str, quantity: str, unit: str, score: Score, *, conditions: str = "", top: float = math.inf
@@ -96,19 +98,27 @@ class ShownSet:
             self.icons, few, rig, depths_m, self.end_s, RATE_HZ / EVERY, None, (cold, warm)
         )
 
-        def confusions(at: ReceptorTemperatures, observer: Observer, people: People, samples: int) -> Array:
+        def confusions(at: ReceptorTemperatures, laboratory: DrawnLaboratory, samples: int) -> Array:
+            observer, people, form = laboratory
             felt = respond(at, people, observer, detection=False)
-            return identify(felt, USUAL_MEMORY, people, observer, self.seed, samples)[1].probability
+            trials = few_named(len(labels)) if form == "naming" else samples
+            return identify(felt, form, people, observer, self.seed, trials)[1].probability
 
-        whole = confusions(self.played(variable), nominal, self.crowd, SAMPLES)
-        invited = others.invited(len(few))
+        def by_both(at: ReceptorTemperatures, people: People, samples: int) -> Array:
+            laboratories = (DrawnLaboratory(nominal, people, form) for form in MEMORY_FORMS)
+            return np.asarray(np.mean([confusions(at, each, samples) for each in laboratories], axis=0))
+
+        whole = by_both(self.played(variable), self.crowd, SAMPLES)
+        invited, scores = others.invited(len(few)), pair_scores(labels, len(others), self.seed)
 
         def drawn(k: int) -> Array:
-            return np.asarray(confusions(thin, *others.at(k, len(few)), FEW_SAMPLES)[invited[k]])
+            laboratory = others.at(k, len(few))
+            named = confusions(thin, laboratory, FEW_SAMPLES)[invited[k]]
+            return with_pairs(named, laboratory.observer.pair_spread * scores[k])
 
         each = list(in_order(drawn, range(draws)))
         kept = np.stack(each) if each else np.zeros((0, *whole.shape))
-        alone = confusions(thin, nominal, few, FEW_SAMPLES)
+        alone = by_both(thin, few, FEW_SAMPLES)
         return VariantConfusions(variable, labels, whole, alone, kept, self.baseline)
 
 
@@ -202,7 +212,7 @@ def wave_shapes(confused: VariantConfusions, alike: Sequence[Likeness]) -> tuple
     """Similarity of shapes at the skin, and whether they are each other's main confusions."""
     places = {shape: [confused.labels.index(wave_name(shape, *group)) for group in GROUPS] for shape in SHAPES}
     results, skin = [], "skin temperature over the swing, largest of four groups"
-    how = f"named from memory, {len(confused.labels)} icons, {confused.probability.shape[0]} people, {USUAL_MEMORY}"
+    how = f"named from memory, {len(confused.labels)} icons, {confused.probability.shape[0]} people, {FORMS}"
     for pair in PAIRS:
         both = " and ".join(pair)
         largest = max(one.largest for one in alike if one.pair == pair)

@@ -16,7 +16,7 @@ from ..experiments.laboratory import PEOPLE, SEED, Laboratory
 from ..experiments.measure import Setting
 from ..identification.laboratory_draws import DrawnLaboratories
 from ..kernels.parallel import in_order
-from ..observer.channels import CHANNELS, USUAL_MEMORY, Variable
+from ..observer.channels import CHANNELS, Variable
 from ..observer.draws import PosteriorDraws
 from ..observer.mechanisms.age import YOUNG_YEARS
 from ..observer.observer import Observer, variant_records
@@ -119,9 +119,7 @@ def interval_of(each: Sequence[float]) -> tuple[float | None, float | None]:
 def plausible_laboratories(n: int, seed: int, variable: Variable) -> DrawnLaboratories:
     """Laboratories of n draws of the posterior of a variant."""
     posterior, records = PosteriorDraws.load(variable=variable), variant_records(variable)
-    return DrawnLaboratories.of(
-        replace(ObserverModel.load(), records=records, posterior=posterior), USUAL_MEMORY, n, seed
-    )
+    return DrawnLaboratories.of(replace(ObserverModel.load(), records=records, posterior=posterior), "both", n, seed)
 
 
 def plausible_observers(n: int, seed: int, variable: Variable = "temperature") -> tuple[Observer, ...]:

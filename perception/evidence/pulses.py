@@ -14,7 +14,7 @@ from ..identification.confusion import confuse
 from ..identification.laboratory_draws import SAMPLES
 from ..identification.population import memory_dprime, respond
 from ..identification.task import USUAL
-from ..observer.channels import USUAL_MEMORY, Variable
+from ..observer.channels import MEMORY_FORMS, Variable
 from ..observer.observer import DATA, Observer
 from ..ranking.rank import rank
 from ..ranking.ranking import Ranking
@@ -54,7 +54,7 @@ def short_pulses(variable: Variable, people: int, draws: int, seed: int) -> tupl
         made.append(found.predicted("short pulses", asked, "proportion", correct, top=1.0))
     every, observer = _shown(None, RANKED, seed), Observer.load(variable=variable)
     felt = respond(every.played(variable), every.crowd, observer, detection=False)
-    apart = memory_dprime(felt, USUAL_MEMORY, every.crowd.memory, observer, USUAL)
+    apart = memory_dprime(felt, MEMORY_FORMS[0], every.crowd.memory, observer, USUAL)
     chance, said = np.random.default_rng(np.random.SeedSequence([seed, 31])), f"{SETS} sets of {RANKED} people, {RIG}"
     scores = []
     for _ in range(SETS):

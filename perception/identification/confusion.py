@@ -216,8 +216,19 @@ _kept_noise = lru_cache(maxsize=128)(_noise)
 
 NAMED_SAMPLES = 400
 """Trials of an icon for a person: a cell of one person has a standard error of at most 0.025."""
+FEW_NAMED, LEAST_NAMED = 1152, 4
+"""Trials times the square of icons, where a mean over forms of memory or a draw counts: 32 trials of six icons."""
 NOISES = 4
 """Features that carry noise: intensity, rate, length, pause."""
+
+
+def few_named(icons: int) -> int:
+    """Trials of an icon for one of many people: the fewer the more names each of them is compared with.
+
+    >>> few_named(6), few_named(64)
+    (32, 4)
+    """
+    return min(NAMED_SAMPLES, max(LEAST_NAMED, FEW_NAMED // icons**2))
 
 
 def name_directly(

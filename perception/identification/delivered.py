@@ -15,7 +15,7 @@ import numpy as np
 from thermicon.base.numbers.arrays import Array
 from thermicon.circuit.delivery.delivered_drive import loss_limit
 
-from ..observer.channels import CHANNELS, USUAL_MEMORY, Channel
+from ..observer.channels import CHANNELS, MEMORY_FORMS, Channel
 from ..observer.observer import Observer
 from ..observer.people import draw_people
 from ..sensation.percept import Percept, perceive
@@ -151,4 +151,4 @@ def _change(met_K: Array, channel: Channel, designed: Trace, delivered: Trace, a
 
 def _d_primes(percepts: Sequence[Percept], names: Sequence[str]) -> Array:
     felt = np.array([p.psi_cold for p in percepts]), np.array([p.psi_warm for p in percepts])
-    return dprimes_from_memory(felt, felt, percepts[0].dt_s, Observer.load(), USUAL_MEMORY, (names, names))
+    return dprimes_from_memory(felt, felt, percepts[0].dt_s, Observer.load(), MEMORY_FORMS[0], (names, names))

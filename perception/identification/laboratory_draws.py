@@ -1,7 +1,7 @@
 """The prediction of each posterior draw for a set.
 
 A draw brings its own spread between people, an offset of the laboratory, and memory: its own, or, since no published
-posterior knows of it, drawn from its intervals.
+posterior knows of it, drawn from its intervals, with one form or the other, and odds of its own for every pair.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,15 +19,17 @@ from thermicon.base.files.records import RecordTable
 from thermicon.base.numbers.arrays import Array
 
 from ..kernels.parallel import in_order
-from ..observer.channels import MemoryForm, Variable
+from ..observer.channels import FORM, MEMORY_FORMS, MemoryChoice, MemoryForm, Variable, forms_in
 from ..observer.constants import name_of
 from ..observer.mechanisms.memory import MEMORY_NAMES, MISSING
 from ..observer.observer import Observer, variant_records
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People, draw_people
 from ..sensation.detection import pooled
+from .confusion import few_named
 from .measures import felt_and_named, information_bits, proportion_correct
-from .population import ReceptorTemperatures, identify, respond
+from .pairs import pair_scores, with_pairs
+from .population import ReceptorTemperatures, identify, memory_dprime, respond
 from .task import USUAL, Task
 
 LOG_FROM = 1.5
@@ -74,17 +77,17 @@ def latin(parameters: int, draws: int, seed: int) -> Array:
     return np.asarray((strata + rng.random(strata.shape)) / draws)
 
 
-def memory_parameters(form: MemoryForm, records: RecordTable | None = None) -> tuple[Uncertain, ...]:
-    """The uncertain constants of memory that a form makes use of, by the records of an observer (None: the shipped).
+def memory_parameters(memory: MemoryChoice, records: RecordTable | None = None) -> tuple[Uncertain, ...]:
+    """The uncertain constants of memory that some forms make use of, by the records of an observer (None: the shipped).
 
-    >>> [parameter.name for parameter in memory_parameters("episodes")]
-    ['share of the scatter of ratings', 'bar of an episode', 'memory noise (episodes)']
+    >>> [parameter.name for parameter in memory_parameters("episodes")][:2]
+    ['share of the scatter of ratings', 'bar of an episode']
     """
     found = []
     for record in variant_records() if records is None else records:
         name = name_of(record)
         low, high = record.interval
-        if name in MEMORY_NAMES and (name != MISSING or form == "naming") and low < high:
+        if name in MEMORY_NAMES and (name != MISSING or "naming" in forms_in(memory)) and low < high:
             found.append(Uncertain(name, low, high, record.unit))
     return tuple(found)
 
@@ -92,9 +95,27 @@ def memory_parameters(form: MemoryForm, records: RecordTable | None = None) -> t
 OFFSETS = ("laboratory, cold", "laboratory, warm")
 
 
+class DrawnLaboratory(NamedTuple):
+    """The observer of a laboratory, its people, and the form of their memory."""
+
+    observer: Observer
+    people: People
+    form: MemoryForm
+
+
+def laboratory_forms(laboratories: int, memory: MemoryChoice, seed: int) -> NDArray[np.int64]:
+    """Places in `MEMORY_FORMS` (laboratories,): of both forms each has half of the laboratories, by chance."""
+    held = [MEMORY_FORMS.index(form) for form in forms_in(memory)]
+    chance = np.random.default_rng(np.random.SeedSequence([seed, 15]))
+    return chance.permutation(np.resize(held, laboratories))
+
+
 @dataclass(frozen=True, slots=True)
 class DrawnLaboratories:
-    """One laboratory for each of some evenly spaced draws: `values` (n, constants) of `names`, offsets in ln."""
+    """One laboratory for each of some evenly spaced draws.
+
+    `values` (n, constants) of `names`: constants, memory with its form, and offsets in ln.
+    """
 
     variable: Variable
     names: tuple[str, ...]
@@ -103,31 +124,37 @@ class DrawnLaboratories:
     age_years: float | None
 
     @classmethod
-    def of(cls, model: ObserverModel, form: MemoryForm, draws: int, seed: int) -> DrawnLaboratories:
+    def of(cls, model: ObserverModel, memory: MemoryChoice, draws: int, seed: int) -> DrawnLaboratories:
         """As many laboratories of a model as `draws`; a ValueError for an observer without draws."""
         held = model.drawn
         chosen = held.spaced(draws)
-        free = [p for p in memory_parameters(form, records=model.records) if p.name not in held.memory_names]
+        free = [p for p in memory_parameters(memory, records=model.records) if p.name not in held.memory_names]
         shares = latin(len(free), draws, seed).tolist()
-        memory = [[p.at(share) for p, share in zip(free, row, strict=True)] for row in shares]
-        offsets, free_memory = held.new_laboratory(seed)[chosen], np.reshape(memory, (draws, len(free)))
-        values = np.hstack([held.draws[chosen], held.memory[chosen], free_memory, offsets])
-        names = (*held.names, *held.memory_names, *(p.name for p in free), *OFFSETS)
+        drawn = [[p.at(share) for p, share in zip(free, row, strict=True)] for row in shares]
+        forms = laboratory_forms(draws, memory, seed)
+        if memory == "both" and held.forms is not None:
+            forms = np.array([MEMORY_FORMS.index(held.forms[k]) for k in chosen])
+        own = [k for k, name in enumerate(held.memory_names) if name != FORM]
+        parts = (held.draws[chosen], held.memory[np.ix_(chosen, own)], np.reshape(drawn, (draws, len(free))))
+        values = np.hstack([*parts, forms[:, None], held.new_laboratory(seed)[chosen]])
+        memory_names = (*(held.memory_names[k] for k in own), *(p.name for p in free), FORM)
+        names = (*held.names, *memory_names, *OFFSETS)
         return cls(held.variable, names, values, seed, model.age_years)
 
     def __len__(self) -> int:
         return len(self.values)
 
-    def at(self, place: int, people: int) -> tuple[Observer, People]:
-        """The observer of one laboratory, and its people."""
+    def at(self, place: int, people: int) -> DrawnLaboratory:
+        """One laboratory with so many people."""
         return self.with_values(self.values[place], people)
 
-    def with_values(self, values: Array, people: int) -> tuple[Observer, People]:
-        """The observer and the people of a laboratory with these values of the constants (constants,)."""
+    def with_values(self, values: Array, people: int) -> DrawnLaboratory:
+        """A laboratory with these values of the constants (constants,)."""
         named = dict(zip(self.names, values.tolist(), strict=True))
         offsets = named[OFFSETS[0]], named[OFFSETS[1]]
         observer = Observer.from_values(named, self.variable)
-        return observer, draw_people(people, self.seed, age_years=self.age_years, observer=observer, offsets=offsets)
+        crowd = draw_people(people, self.seed, age_years=self.age_years, observer=observer, offsets=offsets)
+        return DrawnLaboratory(observer, crowd, MEMORY_FORMS[round(named[FORM])])
 
     def invited(self, people: int) -> NDArray[np.int64]:
         """Places (n, people) of the people whom each laboratory invites: a random sample of its own."""
@@ -182,7 +209,7 @@ class LaboratoryDraws:
 def laboratory_draws(
     played: Callable[[int], ReceptorTemperatures],
     persons: People,
-    form: MemoryForm,
+    memory: MemoryChoice,
     model: ObserverModel,
     *,
     draws: int,
@@ -196,12 +223,14 @@ def laboratory_draws(
     `played` says what the receptors of the persons go through in a draw, by its number. Every draw has its own people
     with the same seed, and invites a random sample of them (`resampled`), or all of them once.
     """
-    laboratories, count = DrawnLaboratories.of(model, form, draws, seed), len(persons)
+    laboratories, count = DrawnLaboratories.of(model, memory, draws, seed), len(persons)
     invited = laboratories.invited(count) if resampled else np.tile(np.arange(count), (draws, 1))
+    pairs, apart_by = pair_scores(played(0).names, draws, seed), forms_in(memory)[0]
 
     def one(place: int) -> tuple[Array, ...]:
-        observer, people = laboratories.at(place, count)
-        return scored(played(place), people, observer, form, seed, task, invited[place])
+        laboratory = laboratories.at(place, count)
+        log_odds = laboratory.observer.pair_spread * pairs[place]
+        return scored(played(place), laboratory, apart_by, log_odds, seed, task, invited[place])
 
     found = []
     for scores in in_order(one, list(range(draws))):
@@ -209,50 +238,67 @@ def laboratory_draws(
         if step is not None:
             step()
     each = (np.stack(scores) for scores in zip(*found, strict=True))
-    acting = cache(partial(_acting, laboratories, played(0), min(count, FEW), form, seed, task))
+    acting = cache(partial(_acting, laboratories, played(0), pairs[0], min(count, FEW), seed, task))
     return LaboratoryDraws(laboratories.names, laboratories.values, acting, *each)
 
 
 def _acting(
-    laboratories: DrawnLaboratories, played: ReceptorTemperatures, count: int, form: MemoryForm, seed: int, task: Task
+    laboratories: DrawnLaboratories, played: ReceptorTemperatures, pairs: Array, count: int, seed: int, task: Task
 ) -> NDArray[np.bool_]:
-    """Whether each constant (constants,), moved alone as far as the draws go, changes what a few people say."""
-    few, values = played.first(count), laboratories.values
+    """Whether each constant (constants,), moved alone as far as the draws go, changes what a few people say.
+
+    What acts with one form of memory acts.
+    """
+    few, drawn, names = played.first(count), laboratories.values, laboratories.names
 
     def named(constants: Array) -> Array:
-        observer, people = laboratories.with_values(constants, count)
+        observer, people, form = laboratories.with_values(constants, count)
         felt = respond(few, people, observer, detection=False)
         d_prime, confusion = identify(felt, form, people, observer, seed, LEAST, task=task)
-        return np.stack([d_prime, confusion.probability])
+        return np.stack([d_prime, with_pairs(confusion.probability, observer.pair_spread * pairs)])
 
     def acts(k: int) -> bool:
-        moved, column = values[0].copy(), values[:, k]
-        moved[k] = column[np.abs(column - moved[k]).argmax()]
-        return not np.array_equal(named(moved), usual)
+        column = drawn[:, k]
+        for values, usual in zip(places, usually, strict=True):
+            moved = values.copy()
+            moved[k] = column[np.abs(column - moved[k]).argmax()]
+            if not np.array_equal(named(moved), usual):
+                return True
+        return False
 
-    usual = named(values[0])
-    return np.array(list(in_order(acts, range(values.shape[1]))))
+    forms = np.unique(drawn[:, names.index(FORM)])
+    places = [np.where(np.array(names) == FORM, form, drawn[0]) for form in forms.tolist()]
+    usually = [named(values) for values in places]
+    return np.array(list(in_order(acts, range(drawn.shape[1]))))
 
 
 def scored(
     few: ReceptorTemperatures,
-    people: People,
-    observer: Observer,
-    form: MemoryForm,
+    laboratory: DrawnLaboratory,
+    apart_by: MemoryForm,
+    log_odds: Array,
     seed: int,
     task: Task,
     invited: NDArray[np.int64],
 ) -> tuple[Array, ...]:
-    """Scores of the invited people (correct, bits, detected, d′, onset, confusions, felt and named), and of each."""
-    samples = min(SAMPLES, max(LEAST, NAMED // len(few.names)))
+    """Scores of the invited people (correct, bits, detected, d′, onset, confusions, felt and named), and of each.
+
+    d′ are by the form `apart_by`; `log_odds` (icons, icons) are those of pairs in this laboratory.
+    """
+    observer, people, form = laboratory
+    icons = len(few.names)
+    samples = few_named(icons) if form == "naming" else min(SAMPLES, max(LEAST, NAMED // icons))
     felt = respond(few, people, observer, times=True)
     d_prime, confusion = identify(felt, form, people, observer, seed, samples, task=task)
-    correct, bits = proportion_correct(confusion.probability), information_bits(confusion.probability)
-    named, found = confusion.probability[invited].mean(axis=0), felt.detected
+    if form != apart_by:
+        d_prime = memory_dprime(felt, apart_by, people.memory, observer, task)
+    probability = with_pairs(confusion.probability, log_odds)
+    correct, bits = proportion_correct(probability), information_bits(probability)
+    named, found = probability[invited].mean(axis=0), felt.detected
     reported = found.courses[invited].sum(axis=0)
     reports = pooled(found.probability[invited], found.cold_share[invited], reported, found.dt_s)
     correct, bits, apart = correct[invited], bits[invited], np.median(d_prime[invited], axis=0)
-    alert = felt_and_named(found.probability, confusion.probability)[invited]
+    alert = felt_and_named(found.probability, probability)[invited]
     of_set = correct.mean(), bits.mean(), reports.probability, apart, reports.onset_s, 0.5 * (named + named.T)
     single = correct, bits, found.probability[invited].min(axis=1), alert.mean(axis=1)
     return *of_set, alert.mean(axis=0), alert.mean(), *single

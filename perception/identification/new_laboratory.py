@@ -16,11 +16,19 @@ from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
 from thermicon.icons import Icon
 
-from ..observer.channels import MemoryForm
+from ..observer.channels import MemoryChoice, forms_in
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from .depths import rungs
-from .laboratory_draws import EVERY, MANY, LaboratoryDraws, laboratory_draws, people_for_intervals, scored
+from .laboratory_draws import (
+    EVERY,
+    MANY,
+    DrawnLaboratory,
+    LaboratoryDraws,
+    laboratory_draws,
+    people_for_intervals,
+    scored,
+)
 from .population import RATE_HZ, ReceptorTemperatures
 from .task import USUAL, Task
 
@@ -112,7 +120,7 @@ def new_laboratory(
     end_s: float,
     crowd: People,
     predicted: Nominal,
-    form: MemoryForm,
+    memory: MemoryChoice,
     *,
     tracking: str | None = None,
     model: ObserverModel | None = None,
@@ -136,10 +144,15 @@ def new_laboratory(
         RATE_HZ / (EVERY if count <= MANY else 2 * EVERY), tracking,
     )  # fmt: skip
     each = laboratory_draws(
-        lambda _: few, persons, form, own, draws=draws, seed=seed, task=task, resampled=True, step=step
+        lambda _: few, persons, memory, own, draws=draws, seed=seed, task=task, resampled=True, step=step
     )
     # Means over all the people of the nominal observer: their sample belongs to the draw.
-    centre = scored(few, persons, own.nominal, form, seed, task, np.arange(len(persons)))
+    forms, everybody, alike = forms_in(memory), np.arange(len(persons)), np.zeros((count, count))
+    by_form = [
+        scored(few, DrawnLaboratory(own.nominal, persons, form), forms[0], alike, seed, task, everybody)
+        for form in forms
+    ]
+    centre = [np.mean(scores, axis=0) for scores in zip(*by_form, strict=True)]
     tops = (1.0, math.log2(count), 1.0, math.inf, math.inf, 1.0)
     shifts = {name: getattr(predicted, name) - own for name, own in zip(Nominal.__slots__, centre[:7], strict=True)}
     moved: dict[str, Any] = {}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -11,16 +11,17 @@ import numpy as np
 
 from thermicon.base.numbers.arrays import Array
 
-from ..observer.channels import MemoryForm
+from ..observer.channels import MemoryChoice, MemoryForm, forms_in
 from ..observer.constants import Both
 from ..observer.observer import Observer
 from ..observer.people import People
 from ..sensation.detection import Detection, detect
 from ..sensation.percept import perceive_many
 from ..sensation.received import uniform_clock
-from .confusion import NAMED_SAMPLES, SAMPLES, Confusion, confuse, name_directly
+from .confusion import NAMED_SAMPLES, SAMPLES, Confusion, confuse, few_named, name_directly
 from .depths import between
 from .episodes import Episodes, episode_distances
+from .measures import information_bits
 from .task import USUAL, Task
 
 if TYPE_CHECKING:
@@ -201,3 +202,41 @@ def identify(
         )  # fmt: skip
         return d_prime, named
     return d_prime, confuse(d_prime, lapse=crowd.lapse, seed=seed, samples=samples, first=first)
+
+
+@dataclass(frozen=True, slots=True)
+class Identification:
+    """How people name icons: `d_prime` (people, icons, icons) by the first form of memory, confusions by every form."""
+
+    d_prime: Array
+    by_form: Mapping[MemoryForm, Confusion]
+
+    @property
+    def probability(self) -> Array:
+        """Confusions (people, icons, icons), the mean over forms."""
+        return np.asarray(np.mean([each.probability for each in self.by_form.values()], axis=0))
+
+    @property
+    def bits(self) -> Array:
+        """Information (people,), bits: the mean over forms, of which a laboratory has one."""
+        return np.asarray(np.mean([information_bits(each.probability) for each in self.by_form.values()], axis=0))
+
+
+def form_samples(memory: MemoryChoice, icons: int) -> dict[MemoryForm, int]:
+    """Trials of an icon for each person, by form; where both count, fewer are named directly."""
+    return {"episodes": SAMPLES, "naming": few_named(icons) if memory == "both" else NAMED_SAMPLES}
+
+
+def identify_by(
+    felt: PopulationResponse,
+    memory: MemoryChoice,
+    crowd: People,
+    observer: Observer,
+    seed: int,
+    first: int = 0,
+    task: Task = USUAL,
+) -> Identification:
+    """The same by every form that counts."""
+    forms, samples = forms_in(memory), form_samples(memory, felt.episodes.counts.shape[1])
+    found = {form: identify(felt, form, crowd, observer, seed, samples[form], first, task) for form in forms}
+    return Identification(found[forms[0]][0], {form: named for form, (_, named) in found.items()})

@@ -10,10 +10,21 @@ from typing import Literal, get_args
 
 Channel = Literal["cold", "warm"]
 MemoryForm = Literal["episodes", "naming"]
+MemoryChoice = Literal["both", "episodes", "naming"]
 CHANNELS: tuple[Channel, ...] = get_args(Channel)
 MEMORY_FORMS: tuple[MemoryForm, ...] = get_args(MemoryForm)
 """How the episodes of an icon are remembered: in logarithms, or as ratings that are named directly."""
-USUAL_MEMORY: MemoryForm = "episodes"
+FORM = "form of memory"
+"""Name of a laboratory's form, as its place in `MEMORY_FORMS`, in draws."""
+
+
+def forms_in(memory: MemoryChoice) -> tuple[MemoryForm, ...]:
+    """The forms that count; distances and reasons are those of the first.
+
+    >>> forms_in("both"), forms_in("naming")
+    (('episodes', 'naming'), ('naming',))
+    """
+    return tuple(form for form in MEMORY_FORMS if memory in ("both", form))
 
 
 SIGN: Mapping[Channel, float] = {"cold": -1.0, "warm": 1.0}

@@ -18,7 +18,7 @@ from thermicon.base.files.records import RecordTable
 from thermicon.base.numbers.arrays import Array, own_arrays
 from thermicon.base.words.near_words import did_you_mean
 
-from .channels import CHANNELS, Variable, check_variable
+from .channels import CHANNELS, FORM, MEMORY_FORMS, MemoryForm, Variable, check_variable
 from .constants import BETWEEN_LABORATORIES, name_of
 from .draws_file import DrawsHeader, read_draws, shipped_file
 from .observer import Observer, variant_records
@@ -87,6 +87,16 @@ class PosteriorDraws:
     def one_laboratory(self) -> bool:
         """Whether all draws are of one laboratory, so that there is next to no spread between laboratories."""
         return bool(self.values(BETWEEN_LABORATORIES).max() < NEGLIGIBLE)
+
+    @property
+    def forms(self) -> tuple[MemoryForm, ...] | None:
+        """The form of memory of every draw; None where draws are of new laboratories, which have either.
+
+        Draws that a laboratory kept before it had a form are of `episodes`.
+        """
+        if FORM in self.memory_names:
+            return tuple(MEMORY_FORMS[round(form)] for form in self.memory[:, self.memory_names.index(FORM)].tolist())
+        return (MEMORY_FORMS[0],) * len(self) if self.one_laboratory else None
 
     def interval(self, name: str, share: float = 0.95) -> tuple[float, float, float]:
         """Lower end, median and upper end of the central interval of a constant."""

@@ -18,8 +18,9 @@ from thermicon.base.files.records import RecordError
 from thermicon.base.numbers.arrays import Array
 from thermicon.base.words.near_words import did_you_mean
 
+from .channels import FORM as FORM_OF_MEMORY
 from .channels import VARIABLES, Variable, check_variable
-from .constants import ANY, objection_to, ranges_of
+from .constants import ANY, SHARE, objection_to, ranges_of
 from .mechanisms.memory import MEMORY_NAMES
 from .observer import DATA, Observer
 
@@ -167,7 +168,7 @@ def read_draws(path: Path) -> tuple[DrawsHeader, tuple[str, ...], Array, tuple[s
 
 def _numbers(file: str, names: Sequence[str], rows: Sequence[Sequence[str]], first_line: int) -> Array:
     """The rows as numbers (rows, names)."""
-    draws, ranges = np.empty((len(rows), len(names))), ranges_of(Observer)
+    draws, ranges = np.empty((len(rows), len(names))), {**ranges_of(Observer), FORM_OF_MEMORY: SHARE}
     within = [ranges.get(name, ANY) for name in names]
     for number, row in enumerate(rows):
         where = f"{file}, line {first_line + number}"

@@ -55,8 +55,9 @@ class Observer(SensoryChain):
         Drive that feels like a threshold, SD (ln) of the gain, slope of sensation in d′ and its exponent.
     rating_at_threshold, rating_exponent, mean_rating, rating_scatter
         Ratings, points of 100.
-    timing_noise, rated_share, missing_cost, episode_bar, lapse
-        Memory: noise of rates (ln), λ, cost of a missing episode, the bar in d′, share of trials with any name.
+    timing_noise, rated_share, missing_cost, episode_bar, lapse, pair_spread
+        Memory: noise of rates (ln), λ, cost of a missing episode, the bar in d′, share of trials with any name; how
+        much the odds of confusing a pair differ between laboratories (ln).
     lost_per_decade, area_exponent, reference_area_m2, least_area_m2, forearm_factor
         What sensitivity depends on: age (ln), area in m², and site.
     limit_C, softness_K, integration_s, adaptation_s, neutral_C, neutral_flux

@@ -15,7 +15,7 @@ from thermicon.base.checks.arguments import checked
 from thermicon.base.files.inputs import InputError
 from thermicon.base.files.records import RecordError, RecordTable
 
-from .channels import CHANNELS, USUAL_MEMORY, VARIABLES, MemoryForm
+from .channels import CHANNELS, VARIABLES, MemoryChoice
 from .draws import PosteriorDraws
 from .observer import DATA, Observer, read_records, variant_records
 from .people import People, draw_people
@@ -128,7 +128,7 @@ class CrowdWords(TypedDict, total=False):
     people: int
     seed: int
     tracking: Tracking | None
-    memory: MemoryForm
+    memory: MemoryChoice
     observer: AnyObserver | None
 
 
@@ -147,8 +147,8 @@ class Crowd:
         What every virtual person receives: `replay` (the same current), `display` (the same display temperature) or
         `ideal` (the same skin temperature); None: by the control of each icon.
     memory
-        Form of memory: `episodes` (compared in logarithms) or `naming` (as ratings, each trial named
-        directly).
+        Form of memory: `episodes` (compared in logarithms), `naming` (as ratings, each trial named directly), or
+        `both`: shares are the mean over both, and each laboratory has one of them with even odds.
     observer
         Another observer with its posterior, or the file of one; None: the shipped one. One without draws gives no
         intervals for a new laboratory.
@@ -161,13 +161,13 @@ class Crowd:
     Examples
     --------
     >>> Crowd(people=50).but(seed=3)
-    Crowd(people=50, seed=3, tracking=None, memory='episodes', observer=None)
+    Crowd(people=50, seed=3, tracking=None, memory='both', observer=None)
     """
 
     people: int = 200
     seed: int = 0
     tracking: Tracking | None = None
-    memory: MemoryForm = USUAL_MEMORY
+    memory: MemoryChoice = "both"
     observer: AnyObserver | None = None
 
     def __post_init__(self) -> None:

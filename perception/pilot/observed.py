@@ -19,6 +19,7 @@ from thermicon.icons.files.shipped import Icons, set_of
 
 from ..experiments.measure import Setting
 from ..kernels.parallel import Progress, step_counter
+from ..observer.channels import forms_in
 from ..observer.draws import PosteriorDraws
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from .conditioning import Conditioned, MeasuredValues, Namings, condition
@@ -228,7 +229,7 @@ def observed(
         raise ValueError(f"the answers are to other icons than those of the set ({', '.join(names[:6])})")
     if draws < LEAST_DRAWS:
         raise ValueError(f"an interval needs at least {LEAST_DRAWS} draws, not {draws}")
-    prior, further = LaboratoryPrior.of(crowd.observer, crowd.memory), [set_of(each) for each in others]
+    prior, further = LaboratoryPrior.of(crowd.observer, forms_in(crowd.memory)[0]), [set_of(each) for each in others]
     number = laboratories_for(max(len(names), *(len(list(other)) for other in further), 2), draws)
     before, kept = prior.first(number, seed), max(number // 2, 2)
     step = step_counter(progress, (1 + len(others)) * (number + kept))

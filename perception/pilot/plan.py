@@ -22,6 +22,7 @@ from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.icons.files.shipped import Icons, set_of
 
 from ..kernels.parallel import Progress, step_counter
+from ..observer.channels import forms_in
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from .observed import LEAST_DRAWS
 from .playing import Confusions, laboratories_for, stage
@@ -193,7 +194,7 @@ def plan(
     crowd = crowd.but(**words)
     sets, seed = [set_of(each) for each in (icons, other) if each is not None], crowd.seed
     rig = Rig.of(rig, sets[0].context.site)
-    prior = LaboratoryPrior.of(crowd.observer, crowd.memory)
+    prior = LaboratoryPrior.of(crowd.observer, forms_in(crowd.memory)[0])
     number = laboratories_for(max(2, *(len(list(each)) for each in sets)), draws)
     laboratories = prior.first(number, seed)
     step = step_counter(progress, number * len(sets) + len(participants) * len(trials))

@@ -18,19 +18,19 @@ from thermicon.base.numbers.program import code_digest as digest_of
 from thermicon.circuit import Rig
 from thermicon.icons import Icon
 
-from ..identification.confusion import SAMPLES
-from ..identification.measures import experiments_bits, information_bits
+from ..identification.measures import experiments_bits
 from ..identification.population import (
     RATE_HZ,
     PopulationResponse,
     ReceptorTemperatures,
-    identify,
+    identify_by,
     memory_dprime,
     respond,
 )
 from ..identification.task import USUAL, Task
 from ..kernels.parallel import in_order
-from ..observer.observer import MEMORY_FORMS, MemoryForm, Observer
+from ..observer.channels import MemoryChoice, MemoryForm, forms_in
+from ..observer.observer import Observer
 from ..observer.observer_model import Crowd, ObserverModel, Tracking
 from ..observer.people import People
 from ..sensation.detection import Detection, report_step
@@ -39,7 +39,6 @@ from ..sensation.detection import pooled as pooled_detection
 DT_S = 1.0 / RATE_HZ
 SAMPLES_AT_ONCE = 1_200_000
 """Instants × icons × people of a batch, about 150 bytes each at the peak; a batch has at least one person."""
-OTHER_SAMPLES, OTHER_NAMED = 512, 1152
 TRIALS = 48
 """Trials of an experiment, unless it is another."""
 EXPERIMENTS = 20
@@ -49,10 +48,10 @@ EXPERIMENTS = 20
 class BatchResult:
     """Responses of the people of a batch, one row per person; p people, m icons, q = m(m − 1)/2 pairs.
 
-    `detected` (p, m), `cold_share` (p, m) of the reports and `confusion` (p, m, m) are probabilities, `reported`
-    (1, m, n) is the number of people who have reported by each time, `d_prime` (p, q) from memory, `correct` (p, m)
-    0–1, `bits`, `plugin` (p,) information and what experiments report of it, `other_correct` (p, m) by the
-    other form of memory.
+    `detected` (p, m), `cold_share` (p, m) of the reports and `confusion` (p, forms, m, m), by every form of memory
+    that counts, are probabilities, `reported` (1, m, n) is the number of people who have reported by each time,
+    `d_prime` (p, q) from memory, `bits`, `plugin` (p,) information and what experiments report of it, the mean over
+    forms.
     """
 
     detected: Array
@@ -60,10 +59,8 @@ class BatchResult:
     reported: Array
     d_prime: Array
     confusion: Array
-    correct: Array
     bits: Array
     plugin: Array
-    other_correct: Array
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -86,7 +83,7 @@ class Job:
     seed: int
     trials: int
     tracking: Tracking | None
-    memory: MemoryForm
+    memory: MemoryChoice
     task: Task = USUAL
     observer: ObserverModel | None = None
 
@@ -120,9 +117,9 @@ class Job:
         return number * self.at_once, min(self.people, (number + 1) * self.at_once)
 
     @property
-    def other_memory(self) -> MemoryForm:
-        """The form of memory that is compared with the chosen one."""
-        return next(memory for memory in MEMORY_FORMS if memory != self.memory)
+    def forms(self) -> tuple[MemoryForm, ...]:
+        """The forms of memory that count; distances and reasons are those of the first."""
+        return forms_in(self.memory)
 
 
 def _respond(job: Job, number: int) -> tuple[People, Observer, PopulationResponse]:
@@ -137,22 +134,18 @@ def run(job: Job, number: int) -> BatchResult:
     """Compute one batch."""
     start, _ = job.span(number)
     crowd, observer, felt = _respond(job, number)
-    d_prime, confusion = identify(felt, job.memory, crowd, observer, job.seed, SAMPLES, start, job.task)
-    # Fewer trials than of the form that counts, the fewer the more templates naming goes through.
-    fewer = OTHER_SAMPLES if job.other_memory != "naming" else max(4, OTHER_NAMED // len(job.icons) ** 2)
-    _, other = identify(felt, job.other_memory, crowd, observer, job.seed, fewer, start, job.task)
-    named = confusion.probability
+    found = identify_by(felt, job.memory, crowd, observer, job.seed, start, job.task)
+    named = [each.probability for each in found.by_form.values()]
+    reported = [experiments_bits(each, job.trials, job.seed, EXPERIMENTS, start).mean(axis=1) for each in named]
     first, second = np.triu_indices(len(job.icons), 1)
     return BatchResult(
         detected=felt.detected.probability,
         cold_share=felt.detected.cold_share,
         reported=felt.detected.reported_sum(),
-        d_prime=d_prime[:, first, second],
-        confusion=named,
-        correct=np.diagonal(named, axis1=1, axis2=2).copy(),
-        bits=information_bits(named),
-        plugin=experiments_bits(named, job.trials, job.seed, EXPERIMENTS, start).mean(axis=1),
-        other_correct=np.diagonal(other.probability, axis1=1, axis2=2).copy(),
+        d_prime=found.d_prime[:, first, second],
+        confusion=np.stack(named, axis=1),
+        bits=found.bits,
+        plugin=np.mean(reported, axis=0),
     )
 
 
@@ -195,21 +188,25 @@ class FeltResult:
 class PooledResult(FeltResult):
     """Responses of all people to m icons.
 
-    `pooled` (m, m); `each_correct` (people, m) where an icon is announced; `bits`, `plugin` (people,); `other_correct`
-    (m,) proportion named of each icon by the other form. `standard_error` and `person_standard_error` are the largest
-    sampling errors of a cell, pooled and of one person.
+    `pooled` (m, m); `by_form` (forms, people, m) of an announced icon named by each form of memory; `bits`, `plugin`
+    (people,). `standard_error` and `person_standard_error` are the largest sampling errors of a cell, pooled and of one
+    person. What is not by a form is the mean over those that count.
     """
 
     pooled: Array
-    each_correct: Array
+    by_form: Array
     bits: Array
     plugin: Array
-    other_correct: Array
     standard_error: float
     person_standard_error: float
 
     def __post_init__(self) -> None:
         own_arrays(self, "pooled")
+
+    @property
+    def each_correct(self) -> Array:
+        """Proportion of every icon that every person names correctly, (people, m)."""
+        return np.asarray(self.by_form.mean(axis=0))
 
     @property
     def correct(self) -> Array:
@@ -236,7 +233,7 @@ def felt_by_people(job: Job, first: int, step: Callable[[], None]) -> Iterator[F
 
     def felt_in(number: int) -> tuple[Array, ...]:
         crowd, observer, felt = _respond(job, number)
-        d_prime, found = memory_dprime(felt, job.memory, crowd.memory, observer, job.task), felt.detected
+        d_prime, found = memory_dprime(felt, job.forms[0], crowd.memory, observer, job.task), felt.detected
         return found.probability, found.cold_share, d_prime[:, one, other], found.reported_sum()[0]
 
     held: list[tuple[Array, ...]] = []

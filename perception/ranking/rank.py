@@ -108,7 +108,7 @@ def rank(
     report()
 
     felt = collect_batches(job, workers, report)
-    scored, pairs = assemble(members, traces, durations, percepts, felt, crowd.memory, nominal)
+    scored, pairs = assemble(members, traces, durations, percepts, felt, job.forms[0], nominal)
     ranking = Ranking(
         version=own_version(),
         content_hash=hashlib.sha256("\0".join([str(icons), rig.document, model.digest]).encode("utf-8")).hexdigest(),

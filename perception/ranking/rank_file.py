@@ -45,7 +45,7 @@ OFTEN_CONFUSED = 0.05
 
 def ranking_file(ranking: Ranking) -> dict[str, Any]:
     """The keys of the contract, in their order."""
-    asked, left, played = ranking.new_laboratory, ranking.carry_over, (ranking.memory, ranking.task.counted)
+    asked, left, played = ranking.new_laboratory, ranking.carry_over, (ranking.job.forms[0], ranking.task.counted)
     elsewhere: list[dict[str, Any]] = (
         asked.rows(ranking.labels) if asked else [dict.fromkeys(NEW_LABORATORY) for _ in ranking.icons]
     )
@@ -146,8 +146,8 @@ def _set(ranking: Ranking, asked: NewLaboratory | None) -> dict[str, Any]:
         "total_J": ranking.total_J,
         "worst_pair": None if ranking.worst_pair is None else list(ranking.worst_pair),
         "rules_disagree": list(ranking.rules_disagree),
-        "norm_sensitivity": ranking.memory_sensitivity,
-        "norm_changes": ranking.memory_changes,
+        "proportion_correct_by_memory": ranking.by_form,
+        "memory_changes": ranking.form_changes,
         "felt_and_named_interval_new_laboratory": asked.felt_and_named if asked else None,
         "proportion_correct_interval_new_laboratory": asked.proportion_correct if asked else None,
         "information_bits_interval_new_laboratory": asked.information_bits if asked and many else None,

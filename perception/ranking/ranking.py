@@ -19,7 +19,7 @@ from ..identification.carry_over import CarryOver
 from ..identification.map import PerceptualMap
 from ..identification.new_laboratory import NewLaboratory, interval_of
 from ..identification.task import Task
-from ..observer.observer import MemoryForm
+from ..observer.channels import MemoryChoice, MemoryForm
 from ..observer.observer_model import Crowd, ObserverModel
 from .assumptions import Assumptions, assumptions_of
 from .batches import Job, PooledResult
@@ -112,8 +112,8 @@ class Ranking(Drawn, Tabled):
         return self.job.tracking or ", ".join(sorted({usual_tracking(icon) for icon in self.job.icons}))
 
     @property
-    def memory(self) -> MemoryForm:
-        """Form of memory: `episodes` or `naming`."""
+    def memory(self) -> MemoryChoice:
+        """Form of memory: `episodes`, `naming`, or `both`."""
         return self.job.memory
 
     @property
@@ -224,23 +224,23 @@ class Ranking(Drawn, Tabled):
         return self.felt.middle
 
     @property
-    def memory_sensitivity(self) -> dict[str, float]:
-        """Proportion named of the set by the other form of memory, under its name."""
-        return {self.job.other_memory: float(self.felt.other_correct.mean())}
+    def by_form(self) -> dict[MemoryForm, float]:
+        """Proportion named of the set by each form of memory that counts."""
+        return dict(zip(self.job.forms, self.felt.by_form.mean(axis=(1, 2)).tolist(), strict=True))
 
     @property
-    def memory_changes(self) -> dict[str, tuple[tuple[str, str], ...]]:
-        """Pairs of icons in another order with the other form of memory: the first is better here, the second there.
+    def form_changes(self) -> tuple[tuple[str, str], ...]:
+        """Pairs of icons that both forms of memory order differently: the first is better with the first form.
 
         Differences must exceed one percentage point in both, since smaller ones are within the sampling error.
         """
-        own, other = [icon.proportion_correct for icon in self.icons], self.felt.other_correct
-        changed = tuple(
+        own, *others = self.felt.by_form.mean(axis=1)
+        return tuple(
             (self.labels[i], self.labels[j])
+            for other in others
             for i, j in permutations(range(len(own)), 2)
             if own[i] > own[j] + PERCENTAGE_POINT and other[j] > other[i] + PERCENTAGE_POINT
         )
-        return {self.job.other_memory: changed}
 
     @property
     def rules_score(self) -> float | None:

@@ -15,8 +15,16 @@ from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import Icon
 from thermicon.icons.files.shipped import Icons, icons_of
 
-from ..identification.measures import felt_and_named, information_bits, proportion_correct
-from ..identification.population import RATE_HZ, PopulationResponse, ReceptorTemperatures, identify, respond, run_end_s
+from ..identification.confusion import normalised
+from ..identification.measures import felt_and_named, proportion_correct
+from ..identification.population import (
+    RATE_HZ,
+    PopulationResponse,
+    ReceptorTemperatures,
+    identify_by,
+    respond,
+    run_end_s,
+)
 from ..identification.task import USUAL, Task
 from ..observer.observer import Observer
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
@@ -89,10 +97,10 @@ def appraise(
     rig, model = Rig.of(rig, icons[0].context.site), crowd.model
     people, nominal = model.people(crowd.people, crowd.seed), model.nominal
     felt, durations = population_response(icons, rig, people, crowd.tracking, detection=True, observer=nominal)
-    d_prime, named = identify(felt, crowd.memory, people, nominal, crowd.seed, task=task)
-    each, bits = proportion_correct(named.probability), float(information_bits(named.probability).mean())
-    alert, pooled = felt_and_named(felt.detected.probability, named.probability), named.pooled
-    middle = np.median(d_prime, axis=0)
+    named = identify_by(felt, crowd.memory, people, nominal, crowd.seed, task=task)
+    probability, bits = named.probability, float(named.bits.mean())
+    each, pooled = proportion_correct(probability), normalised(probability.mean(axis=0))
+    alert, middle = felt_and_named(felt.detected.probability, probability), np.median(named.d_prime, axis=0)
     a, b = nearest_two(middle)
     return Appraisal(
         worst_pair=(icons[a].name, icons[b].name),

@@ -137,8 +137,8 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
     """The cheapest offer that people confirm; each one that they do not confirm moves the target of the next."""
     (i, j), job, before, nominal = pair, ranking.job, ranking.d_prime, ranking.model.nominal
     kept = Pool.of(job.icons, job.rig, nominal)
-    now = kept.dprimes(kept, job.memory, nominal)
-    screening, rejected = Screening(kept, now, pair, wanted, job.memory, nominal), Rejections()
+    now = kept.dprimes(kept, job.forms[0], nominal)
+    screening, rejected = Screening(kept, now, pair, wanted, job.forms[0], nominal), Rejections()
     crowd = ranking.model.people(job.people, job.seed)
     target = wanted * now[i, j] / before[i, j] if now[i, j] > 0 and before[i, j] > 0 else wanted
     largest, confirmed = LARGEST, 0.0
@@ -189,7 +189,7 @@ def _with_people(
 
     def medians(icons: Sequence[Icon], task: Task) -> Array:
         felt, _ = population_response(icons, job.rig, crowd, job.tracking, end_s=end_s, observer=nominal)
-        return np.asarray(np.median(memory_dprime(felt, job.memory, crowd.memory, nominal, task), axis=0))
+        return np.asarray(np.median(memory_dprime(felt, job.forms[0], crowd.memory, nominal, task), axis=0))
 
     i, j = screening.pair
     if job.task.gap_s is None:

@@ -22,6 +22,7 @@ from thermicon.icons.files.shipped import Icons, set_of
 
 from ..identification.new_laboratory import DRAWS
 from ..kernels.parallel import Progress
+from ..observer.channels import forms_in
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..ranking.rank import rank
 from .appraise import Appraisal, appraise
@@ -160,7 +161,7 @@ def search(
         # Those for a share of people first.
         judged = [part for part in wanted.parts if part in wanted.of_sets or part.quantity == "detected"]
         parts = sorted(judged, key=lambda part: (part.people is None, -(part.people or 0.0)))
-    nominal = Evaluator(rig, objective, crowd.memory, crowd.seed, model.nominal, crowd.tracking, wanted)
+    nominal = Evaluator(rig, objective, forms_in(crowd.memory)[0], crowd.seed, model.nominal, crowd.tracking, wanted)
     few = replace(nominal, crowd=model.people(PEOPLE, crowd.seed))
     rng = np.random.default_rng(np.random.SeedSequence([crowd.seed, 8]))
 

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from ..channels import Channel
+from ..channels import FORM, Channel
 from ..constants import FROM_0, SHARE, constant, names_of
 from .gain import Gain
 from .ratings import Ratings
@@ -18,6 +18,8 @@ class Memory(Ratings, Gain):
     between the two. `episode_bar` is the sensation in d′ that a stretch must reach, and by which a valley must part
     two. `missing_cost` is that of a felt episode that a name lacks, beyond its size, when names are given directly: the
     number of features whose noise it would have cost to match it. In a share `lapse` of trials any name is given.
+    In a laboratory, the odds that one icon is called another differ from all this by a factor with the SD `pair_spread`
+    (ln), the same for all its people.
     """
 
     equation = "σ_I = σ_T^(1 − λ) · σ_rated^λ, σ_rated = scatter / (n·rated)"
@@ -27,6 +29,7 @@ class Memory(Ratings, Gain):
     missing_cost: float = constant("cost of a missing episode", FROM_0)
     episode_bar: float = constant("bar of an episode")
     lapse: float = constant("lapse rate", SHARE)
+    pair_spread: float = constant("spread of pairs between laboratories", FROM_0, default=0.0)
 
     def intensity_noise(self, channel: Channel) -> float:
         """σ_I of a channel in log units of drive; gain noise makes part of the scatter of ratings."""
@@ -35,6 +38,6 @@ class Memory(Ratings, Gain):
         return float(self.timing_noise ** (1.0 - self.rated_share) * (scatter / moved) ** self.rated_share)
 
 
-MEMORY_NAMES = names_of(Memory, "timing_noise", "rated_share", "missing_cost", "episode_bar")
-"""Every constant of memory that a table of draws may have a column for. No published posterior has them."""
+MEMORY_NAMES = (*names_of(Memory, "timing_noise", "rated_share", "missing_cost", "episode_bar", "pair_spread"), FORM)
+"""Every number of memory that a table of draws may have a column for. No published posterior has them."""
 NOISE, MISSING = (names_of(Memory, field)[0] for field in ("timing_noise", "missing_cost"))

@@ -13,7 +13,7 @@ from thermicon.perception import Observer, Ranking, Task, cheapest_edit, choose,
 from thermicon.perception.identification import carry_over as carryover
 from thermicon.perception.identification.carry_over import carry_over
 from thermicon.perception.identification.episodes import Episodes, episode_distances
-from thermicon.perception.observer.channels import MEMORY_FORMS, USUAL_MEMORY
+from thermicon.perception.observer.channels import MEMORY_FORMS
 from thermicon.perception.observer.people import People, draw_people
 from thermicon.perception.selection.edit import Edit
 from thermicon.perception.selection.request import Selection
@@ -171,8 +171,8 @@ def test_a_ranking_by_replay_counts_what_replay_leaves_behind() -> None:
     names = [icon.name for icon in ICONS]
     for row in found:
         place = names.index(row["name"])
-        assert tuple(row["carry_over"].values()) == left.worst_of(place, USUAL_MEMORY)
-        assert tuple(row["carry_over"].values()) != other.worst_of(place, USUAL_MEMORY)
+        assert tuple(row["carry_over"].values()) == left.worst_of(place, MEMORY_FORMS[0])
+        assert tuple(row["carry_over"].values()) != other.worst_of(place, MEMORY_FORMS[0])
 
 
 def test_names_are_given_after_ten_minutes_as_in_the_usual_task() -> None:
@@ -199,7 +199,7 @@ def test_icons_that_prescribe_current_are_replayed_too() -> None:
 
 def largest(rig: Rig, gap_s: float, tracking: str | None) -> float:
     """The largest d′ from memory between an icon by itself and after another one."""
-    return float(carry_over(ICONS, rig, 18.0, gap_s, tracking=tracking).apart[MEMORY_FORMS.index(USUAL_MEMORY)].max())
+    return float(carry_over(ICONS, rig, 18.0, gap_s, tracking=tracking).apart[0].max())
 
 
 WAYS = [("forearm", "replay", 79.0), ("thenar", None, 61.0)]
