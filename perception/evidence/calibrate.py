@@ -17,6 +17,7 @@ from ..observer.channels import CHANNELS, VARIABLES, Channel, Variable, receptor
 from ..observer.constants import names_of, quantity_of, record_of
 from ..observer.draws import PosteriorDraws
 from ..observer.observer import Observer, load_thresholds
+from .pairs import pair_spread
 from .results import UNMOVED_SD, Constant, load_constants
 from .rows import load_evidence
 
@@ -74,11 +75,12 @@ def _taken_over(known: RecordTable) -> tuple[Record, ...]:
     """Records that enter as they are, under the observer's own names."""
     zone, area = known.one("complete adaptation"), known.one("thermode area of the forced-choice thresholds")
     (neutral, reference), (low, high) = names_of(Observer, "neutral_C", "reference_area_m2"), zone.interval
-    same = "path_hand_m", "path_forearm_m", "lapse", "rated_share", "missing_cost", "episode_bar", "pair_spread"
+    same = "path_hand_m", "path_forearm_m", "lapse", "rated_share", "missing_cost", "episode_bar"
     return (
         replace(zone, quantity=neutral, low=low, high=high),
         replace(area, quantity=reference),
         *(record_of(known, Observer, field) for field in same),
+        pair_spread(known),
         *(_mean_rating(channel) for channel in CHANNELS),
     )
 

@@ -7,7 +7,7 @@ in numbers. The same chain as `rank`, on the same people.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
@@ -20,7 +20,7 @@ from thermicon.icons import Icon
 
 from ..identification.confusion import SAMPLES, few_named, normalised
 from ..identification.depths import rungs
-from ..identification.laboratory_draws import EVERY, DrawnLaboratory, people_for_intervals
+from ..identification.laboratory_draws import EVERY, DrawnLaboratories, DrawnLaboratory, people_for_intervals
 from ..identification.laboratory_draws import SAMPLES as FEW_SAMPLES
 from ..identification.measures import information_bits, plugin_bits, proportion_correct
 from ..identification.pairs import pair_scores, with_pairs
@@ -88,38 +88,51 @@ class ShownSet:
         return ReceptorTemperatures.simulated(self.icons, self.crowd, *how, (cold, warm))
 
     def identify(self, variable: Variable, draws: int) -> VariantConfusions:
-        """Confusions of one variant from memory."""
-        labels, rig = tuple(icon.name for icon in self.icons), self.rig
-        few = self.crowd.part(0, people_for_intervals(len(labels)))
-        nominal, others = Observer.load(variable=variable), plausible_laboratories(max(draws, 2), self.seed, variable)
-        depths_m = rungs([nominal, *(others.at(k, 1)[0] for k in range(len(others)))], few.corneum_m(rig))
-        cold, warm = (receptor_column(variable, channel) for channel in CHANNELS)
-        thin = ReceptorTemperatures.at_depths(
-            self.icons, few, rig, depths_m, self.end_s, RATE_HZ / EVERY, None, (cold, warm)
-        )
-
-        def confusions(at: ReceptorTemperatures, laboratory: DrawnLaboratory, samples: int) -> Array:
-            observer, people, form = laboratory
-            felt = respond(at, people, observer, detection=False)
-            trials = few_named(len(labels)) if form == "naming" else samples
-            return identify(felt, form, people, observer, self.seed, trials)[1].probability
+        """Confusions of one variant from memory, the mean over both forms; each draw has one of them, and own pairs."""
+        labels, nominal = tuple(icon.name for icon in self.icons), Observer.load(variable=variable)
+        others = plausible_laboratories(max(draws, 2), self.seed, variable)
 
         def by_both(at: ReceptorTemperatures, people: People, samples: int) -> Array:
             laboratories = (DrawnLaboratory(nominal, people, form) for form in MEMORY_FORMS)
-            return np.asarray(np.mean([confusions(at, each, samples) for each in laboratories], axis=0))
+            return np.asarray(np.mean([self._named(at, each, samples) for each in laboratories], axis=0))
 
+        few = self._few(others, variable)
+        alone = by_both(few, self._first, FEW_SAMPLES)
+        scores, kept = pair_scores(len(labels), len(others), self.seed), np.zeros((draws, *alone.shape))
+        for k, named in enumerate(self.named_in(others, variable) if draws else ()):
+            kept[k] = with_pairs(named, others.at(k, 1).observer.pair_spread * scores[k])
         whole = by_both(self.played(variable), self.crowd, SAMPLES)
-        invited, scores = others.invited(len(few)), pair_scores(labels, len(others), self.seed)
-
-        def drawn(k: int) -> Array:
-            laboratory = others.at(k, len(few))
-            named = confusions(thin, laboratory, FEW_SAMPLES)[invited[k]]
-            return with_pairs(named, laboratory.observer.pair_spread * scores[k])
-
-        each = list(in_order(drawn, range(draws)))
-        kept = np.stack(each) if each else np.zeros((0, *whole.shape))
-        alone = by_both(thin, few, FEW_SAMPLES)
         return VariantConfusions(variable, labels, whole, alone, kept, self.baseline)
+
+    def named_in(self, laboratories: DrawnLaboratories, variable: Variable) -> Iterator[Array]:
+        """Confusions (people, icons, icons) of the people whom each laboratory invites, without pairs of its own."""
+        few = self._few(laboratories, variable)
+        people = few.people
+        invited = laboratories.invited(people)
+
+        def named(k: int) -> Array:
+            return np.asarray(self._named(few, laboratories.at(k, people), FEW_SAMPLES)[invited[k]])
+
+        return in_order(named, range(len(laboratories)))
+
+    @property
+    def _first(self) -> People:
+        return self.crowd.part(0, min(len(self.crowd), people_for_intervals(len(self.icons))))
+
+    def _few(self, laboratories: DrawnLaboratories, variable: Variable) -> ReceptorTemperatures:
+        """Receptor temperatures of the first people, for the observers of laboratories and the nominal one."""
+        observers = (laboratories.at(k, 1).observer for k in range(len(laboratories)))
+        cold, warm = (receptor_column(variable, channel) for channel in CHANNELS)
+        depths_m = rungs([Observer.load(variable=variable), *observers], self._first.corneum_m(self.rig))
+        how = self.end_s, RATE_HZ / EVERY, None, (cold, warm)
+        return ReceptorTemperatures.at_depths(self.icons, self._first, self.rig, depths_m, *how)
+
+    def _named(self, at: ReceptorTemperatures, laboratory: DrawnLaboratory, samples: int) -> Array:
+        """Confusions of all people of a laboratory (people, icons, icons)."""
+        observer, people, form = laboratory
+        felt = respond(at, people, observer, detection=False)
+        trials = few_named(len(self.icons)) if form == "naming" else samples
+        return identify(felt, form, people, observer, self.seed, trials)[1].probability
 
 
 def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> ShownSet:

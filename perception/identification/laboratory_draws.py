@@ -225,7 +225,7 @@ def laboratory_draws(
     """
     laboratories, count = DrawnLaboratories.of(model, memory, draws, seed), len(persons)
     invited = laboratories.invited(count) if resampled else np.tile(np.arange(count), (draws, 1))
-    pairs, apart_by = pair_scores(played(0).names, draws, seed), forms_in(memory)[0]
+    pairs, apart_by = pair_scores(len(played(0).names), draws, seed), forms_in(memory)[0]
 
     def one(place: int) -> tuple[Array, ...]:
         laboratory = laboratories.at(place, count)

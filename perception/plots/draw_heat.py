@@ -43,7 +43,7 @@ def plot_distance(ranking: Ranking, ax: Axes | None = None) -> Axes:
     names = [ranking.marked[k] for k in order]
     matrix = ranking.d_prime[np.ix_(order, order)]
     axes = heat(names, names, matrix, ax, top=max(float(matrix.max()), 2.0 * DISTINGUISHABLE_DPRIME))
-    title = f"Predicted d′ between icons (memory: {ranking.memory})"
+    title = f"Predicted d′ between icons (memory: {ranking.job.forms[0]})"
     axes.set(xlabel="… and", ylabel="d′ between …", title=title)
     return axes
 

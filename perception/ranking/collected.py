@@ -59,6 +59,10 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
 
 def _sampling_error(job: Job, confusions: Array, people: int = 1) -> float:
     """Largest standard error of a cell of the mean over forms, of (forms, …), to which so many people give answers."""
-    samples = form_samples(job.memory, len(job.icons))
-    errors = [sampling_error(named, people * samples[form]) for form, named in zip(job.forms, confusions, strict=True)]
+    icons = len(job.icons)
+    samples, exact = form_samples(job.memory, icons), {"episodes": icons <= 2, "naming": icons == 1}
+    errors = [
+        0.0 if exact[form] else sampling_error(named, people * samples[form])
+        for form, named in zip(job.forms, confusions, strict=True)
+    ]
     return float(np.linalg.norm(errors) / len(errors))

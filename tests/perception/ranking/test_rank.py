@@ -10,6 +10,7 @@ from thermicon.icons import load_library, parse
 from thermicon.perception import Ranking, rank
 from thermicon.perception.identification.confusion import NAMED_SAMPLES as NAMED
 from thermicon.perception.identification.confusion import sampling_error
+from thermicon.perception.observer.channels import MEMORY_FORMS
 from thermicon.perception.plots.draw_heat import plot_distance
 from thermicon.perception.ranking import batches, scores
 
@@ -30,7 +31,7 @@ PAIR = (
 SET = (
     "felt_and_named felt_and_named_interval proportion_correct proportion_correct_interval information_bits "
     "information_bits_interval bits_per_s information_bits_plugin trials total_s total_J worst_pair rules_disagree "
-    "norm_sensitivity norm_changes felt_and_named_interval_new_laboratory "
+    "proportion_correct_by_memory memory_changes felt_and_named_interval_new_laboratory "
     "proportion_correct_interval_new_laboratory information_bits_interval_new_laboratory posterior_draws posterior "
     "new_laboratory_people own_laboratory doubt rules_score rules"
 )
@@ -81,8 +82,9 @@ def test_numbers_hang_together(held: Any) -> None:
     low, high = whole["proportion_correct_interval"]
     assert low <= whole["proportion_correct"] <= high
     assert whole["bits_per_s"] == pytest.approx(whole["information_bits"] / 8.0, rel=0.01)
-    assert set(whole["norm_sensitivity"]) == {"naming"}
-    assert set(whole["norm_changes"]) == {"naming"}
+    forms = whole["proportion_correct_by_memory"]
+    assert forms["episodes"] > forms["naming"] + 0.02, "each form is predicted, and the set is the mean of both"
+    assert whole["proportion_correct"] == pytest.approx(np.mean([forms["episodes"], forms["naming"]]))
     assert len(held["pairs"]) == 15
     worst = max(held["pairs"], key=lambda pair: pair["confused_probability"])
     assert whole["worst_pair"] == [worst["a"], worst["b"]]
@@ -187,16 +189,19 @@ def test_what_does_not_exist_is_null() -> None:
 
 
 @pytest.mark.slow
-def test_changes_of_order_under_the_other_memory_are_reported() -> None:
+def test_changes_of_order_between_forms_of_memory_are_reported() -> None:
     icons = load_library("wave-confusions")
-    by = {form: rank(icons, RIG, people=10, parameters=0, memory=form) for form in ("episodes", "naming")}
-    changes = by["episodes"].memory_changes["naming"]
-    assert changes
+    by = {form: rank(icons, RIG, people=10, parameters=0, memory=form) for form in MEMORY_FORMS}
+    both = rank(icons, RIG, people=10, parameters=0)
+    assert both.form_changes and not by["naming"].form_changes, "one form alone has nothing to be compared with"
     places = {form: {icon.name: icon.proportion_correct for icon in ranking.icons} for form, ranking in by.items()}
-    for better, worse in changes:
+    for better, worse in both.form_changes:
         assert places["episodes"][better] > places["episodes"][worse] + 0.01
-        # The other form is judged by fewer presentations.
+        # Where both count, naming is judged by fewer presentations.
         assert places["naming"][worse] > places["naming"][better] - 0.03
+    for form, ranking in by.items():
+        assert both.by_form[form] == pytest.approx(ranking.proportion_correct, abs=0.02)
+    assert np.allclose(both.d_prime, by["episodes"].d_prime), "distances are those of the first form"
 
 
 def test_identical_icons_are_guessed() -> None:
@@ -237,4 +242,6 @@ def test_direct_naming_states_the_error_of_its_own_trials() -> None:
     named = rank(pair, RIG, people=4, parameters=0, memory="naming")
     assert named.felt.standard_error == pytest.approx(sampling_error(named.confusion, 4 * NAMED), rel=1e-12)
     assert named.felt.person_standard_error > named.felt.standard_error > 0.0
-    assert rank(pair, RIG, people=4, parameters=0).felt.standard_error == 0.0
+    assert rank(pair, RIG, people=4, parameters=0, memory="episodes").felt.standard_error == 0.0
+    both = rank(pair, RIG, people=4, parameters=0).felt
+    assert 0.0 < both.standard_error < named.felt.standard_error, "half of the mean is exact"

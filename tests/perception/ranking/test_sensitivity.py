@@ -7,7 +7,7 @@ from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import Observer, draw_people
 from thermicon.perception.identification.laboratory_draws import memory_parameters
-from thermicon.perception.observer.channels import MEMORY_FORMS
+from thermicon.perception.observer.channels import FORM
 from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.ranking.sensitivity import (
@@ -62,7 +62,7 @@ def test_effects_are_ordered_and_measurements_too(found: Sensitivity) -> None:
 def test_every_constant_has_its_measurement() -> None:
     draws = PosteriorDraws.load()
     names = [name for name in draws.names if name not in draws.header.offsets]
-    names += [parameter.name for form in MEMORY_FORMS for parameter in memory_parameters(form)]
+    names += [*(parameter.name for parameter in memory_parameters("both")), FORM]
     names += ["laboratory, cold", "laboratory, warm", "contact resistance", "thickness of the outermost layer"]
     assert {base_name(name) for name in names} == set().union(*load_measurements().values())
 
@@ -116,7 +116,7 @@ def test_messages(rig: Rig) -> None:
     for icons, told, said in (
         (load_library("six-icons"), {"draws": 1001}, r"needs 64 to 1000 draws of the posterior, not 1001"),
         (load_library("six-icons"), {"draws": 63}, r"needs 64 to 1000 draws of the posterior, not 63"),
-        (load_library("six-icons"), {"memory": "mean"}, r"memory takes 'episodes' or 'naming', not 'mean'"),
+        (load_library("six-icons"), {"memory": "mean"}, r"memory takes 'both', 'episodes' or 'naming', not 'mean'"),
         (one, {}, r"needs at least two icons"),
     ):
         with pytest.raises(ValueError, match=said):

@@ -38,7 +38,7 @@ def test_it_is_never_above_what_is_named_nor_what_is_detected(ranking: Ranking) 
     for k in range(3):
         named = found.pair(k, k, "confused")
         assert all(one <= other + 1e-12 for one, other in zip(found.each_felt_and_named[k], named, strict=True))
-    assert found.felt_and_named[1] < found.proportion_correct[0], "the faint icon is missed in any laboratory"
+    assert (each.felt_and_named < each.proportion_correct - 0.05).all(), "the faint icon is missed in any laboratory"
 
 
 def test_no_shift_takes_it_above_named(monkeypatch: pytest.MonkeyPatch) -> None:
