@@ -100,7 +100,7 @@ class ShownSet:
         alone = by_both(few, self._first, FEW_SAMPLES)
         scores, kept = pair_scores(len(labels), len(others), self.seed), np.zeros((draws, *alone.shape))
         for k, named in enumerate(self.named_in(others, variable) if draws else ()):
-            kept[k] = with_pairs(named, others.at(k, 1).observer.pair_spread * scores[k])
+            kept[k] = with_pairs(named, others.at(k, 1).observer.pair_spread, scores[k])
         whole = by_both(self.played(variable), self.crowd, SAMPLES)
         return VariantConfusions(variable, labels, whole, alone, kept, self.baseline)
 

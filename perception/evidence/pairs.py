@@ -76,7 +76,7 @@ def likelihood(known: RecordTable) -> Array:
     for named, scores in _laboratories():
         for place, tau in enumerate(TAUS.tolist()):
             # (pairs, people, icons): each person's share of right names, then the mean over people.
-            each = with_pairs(named[None], tau * scores[:, None])
+            each = with_pairs(named[None], tau, scores[:, None])
             p = np.diagonal(each, axis1=-2, axis2=-1).mean(axis=1)
             error = np.sqrt((p * (1.0 - p)).sum(axis=1) / trials) / p.shape[1]
             density = np.exp(-0.5 * np.square((mean - p.mean(axis=1)) / error)) / error

@@ -229,8 +229,7 @@ def laboratory_draws(
 
     def one(place: int) -> tuple[Array, ...]:
         laboratory = laboratories.at(place, count)
-        log_odds = laboratory.observer.pair_spread * pairs[place]
-        return scored(played(place), laboratory, apart_by, log_odds, seed, task, invited[place])
+        return scored(played(place), laboratory, apart_by, pairs[place], seed, task, invited[place])
 
     found = []
     for scores in in_order(one, list(range(draws))):
@@ -255,7 +254,7 @@ def _acting(
         observer, people, form = laboratories.with_values(constants, count)
         felt = respond(few, people, observer, detection=False)
         d_prime, confusion = identify(felt, form, people, observer, seed, LEAST, task=task)
-        return np.stack([d_prime, with_pairs(confusion.probability, observer.pair_spread * pairs)])
+        return np.stack([d_prime, with_pairs(confusion.probability, observer.pair_spread, pairs)])
 
     def acts(k: int) -> bool:
         column = drawn[:, k]
@@ -276,14 +275,14 @@ def scored(
     few: ReceptorTemperatures,
     laboratory: DrawnLaboratory,
     apart_by: MemoryForm,
-    log_odds: Array,
+    pairs: Array,
     seed: int,
     task: Task,
     invited: NDArray[np.int64],
 ) -> tuple[Array, ...]:
     """Scores of the invited people (correct, bits, detected, d′, onset, confusions, felt and named), and of each.
 
-    d′ are by the form `apart_by`; `log_odds` (icons, icons) are those of pairs in this laboratory.
+    d′ are by the form `apart_by`; `pairs` (icons, icons) are scores of the laboratory.
     """
     observer, people, form = laboratory
     icons = len(few.names)
@@ -292,7 +291,7 @@ def scored(
     d_prime, confusion = identify(felt, form, people, observer, seed, samples, task=task)
     if form != apart_by:
         d_prime = memory_dprime(felt, apart_by, people.memory, observer, task)
-    probability = with_pairs(confusion.probability, log_odds)
+    probability = with_pairs(confusion.probability, observer.pair_spread, pairs)
     correct, bits = proportion_correct(probability), information_bits(probability)
     named, found = probability[invited].mean(axis=0), felt.detected
     reported = found.courses[invited].sum(axis=0)

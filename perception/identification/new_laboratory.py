@@ -147,10 +147,10 @@ def new_laboratory(
         lambda _: few, persons, memory, own, draws=draws, seed=seed, task=task, resampled=True, step=step
     )
     # Means over all the people of the nominal observer: their sample belongs to the draw.
-    forms, everybody, alike = forms_in(memory), np.arange(len(persons)), np.zeros((count, count))
+    forms, everybody, none = forms_in(memory), np.arange(len(persons)), np.zeros((count, count))
+    average = replace(own.nominal, pair_spread=0.0)
     by_form = [
-        scored(few, DrawnLaboratory(own.nominal, persons, form), forms[0], alike, seed, task, everybody)
-        for form in forms
+        scored(few, DrawnLaboratory(average, persons, form), forms[0], none, seed, task, everybody) for form in forms
     ]
     centre = [np.mean(scores, axis=0) for scores in zip(*by_form, strict=True)]
     tops = (1.0, math.log2(count), 1.0, math.inf, math.inf, 1.0)

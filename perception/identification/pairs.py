@@ -1,7 +1,7 @@
 """Pairs of icons that a laboratory confuses more, or less, than its constants say.
 
-The odds that icon a is called b, against its own name, are those of the model times e^(τz), with a standard normal z
-that is the same both ways and for all people of a laboratory.
+The odds that icon a is called b, against its own name, are those of the model times e^(τz − τ²/2), with a standard
+normal z that is the same both ways and for all people of a laboratory: their mean over laboratories is the model's.
 """
 
 import numpy as np
@@ -27,11 +27,15 @@ def pair_scores(icons: int, laboratories: int, seed: int) -> Array:
     return scores
 
 
-def with_pairs(confusion: Array, log_odds: Array) -> Array:
-    """Confusions (..., icons, icons) with the odds of every pair changed by so much (ln), of shape (icons, icons).
+def with_pairs(confusion: Array, spread: float, scores: Array) -> Array:
+    """Confusions (..., icons, icons) of a laboratory whose pairs have a spread τ (ln) and scores (icons, icons).
 
-    >>> with_pairs(np.array([[0.8, 0.2], [0.5, 0.5]]), np.array([[0.0, np.log(2.0)], [np.log(2.0), 0.0]])).round(3)
-    array([[0.667, 0.333],
-           [0.667, 0.333]])
+    >>> one = np.array([[0.8, 0.2], [0.5, 0.5]])
+    >>> with_pairs(one, 1.0, np.array([[0.0, 1.5], [1.5, 0.0]])).round(2)
+    array([[0.6 , 0.4 ],
+           [0.27, 0.73]])
+    >>> bool((with_pairs(one, 0.0, np.ones((2, 2))) == one).all())
+    True
     """
-    return normalised(confusion * np.exp(log_odds))
+    others = 1.0 - np.eye(confusion.shape[-1])
+    return normalised(confusion * np.exp(others * (spread * scores - 0.5 * spread**2)))
