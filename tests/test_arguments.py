@@ -120,7 +120,7 @@ def test_an_error_of_a_function_that_is_handed_in_is_not_ours() -> None:
 def test_a_crowd_and_its_words_are_the_same_people() -> None:
     crowd = Crowd(people=3, memory="naming")
     assert rank("six-icons", crowd=crowd, people=2, parameters=0) != ranked()
-    assert rank("six-icons", crowd=crowd, people=2, memory="episodes", parameters=0).to_json() == ranked().to_json()
+    assert rank("six-icons", crowd=crowd, people=2, memory="both", parameters=0).to_json() == ranked().to_json()
     assert ranked().crowd.but(observer=None) == Crowd(people=2)
 
 

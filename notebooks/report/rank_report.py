@@ -51,7 +51,8 @@ def rank_report(
     chosen = list(choice_lines(made.choice, made.goal)) if made.choice else []
     by = "" if ranking.observer == "shipped" else f", observer {ranking.observer}"
     table = f" The table is about all {len(icons)} icons together." * bool(chosen)
-    short = f"Predicted, not measured: {crowd_text(ranking)}{by}.{table}"
+    held = "" if ranking.new_laboratory is None else f" Intervals: {', '.join(ranking.new_laboratory.covers)}."
+    short = f"Predicted, not measured: {crowd_text(ranking)}{by}.{held}{table}"
     told: list[Block] = [Heading(chosen[0], 3), Bullets(tuple(chosen[1:]))] if chosen else []
     return [
         *([Heading(title, 1)] if title else []),
@@ -195,7 +196,9 @@ def doubt_report(found: Sensitivity, title: str) -> list[Block]:
     rows = [
         (
             effect.constant,
-            f"{effect.low:.3g} to {effect.high:.3g} {printed_unit(effect.unit)}".rstrip(),
+            "episodes or naming"
+            if effect.constant == "form of memory"
+            else f"{effect.low:.3g} to {effect.high:.3g} {printed_unit(effect.unit)}".rstrip(),
             percent(effect.proportion_correct),
             percent(effect.information_bits),
             f"{percent(effect.at_low)} – {percent(effect.at_high)}",

@@ -16,7 +16,8 @@ from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
 from thermicon.icons import Icon
 
-from ..observer.channels import MemoryChoice, forms_in
+from ..observer.channels import FORM, MemoryChoice, forms_in
+from ..observer.mechanisms.memory import PAIRS
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from .depths import rungs
@@ -64,6 +65,14 @@ class NewLaboratory:
     felt_and_named: Interval
     each_felt_and_named: tuple[Interval, ...]
     each: LaboratoryDraws
+
+    @property
+    def covers(self) -> tuple[str, ...]:
+        """What varies between the draws, and is therefore in the intervals."""
+        values = dict(zip(self.each.names, self.each.values.T, strict=True))
+        found = ["people", "constants", "laboratory"]
+        found += ["form of memory"] * bool(np.ptp(values[FORM]))
+        return (*found, *["pairs of icons"] * (len(self.detected) > 1 and bool(np.max(values.get(PAIRS, 0.0)))))
 
     def pair(self, i: int, j: int, of: str = "d_prime") -> Interval:
         """Interval of the d′ of one pair, or of how often it is `confused`."""

@@ -33,7 +33,7 @@ def with_pairs(confusion: Array, spread: float, scores: Array) -> Array:
     >>> one = np.array([[0.8, 0.2], [0.5, 0.5]])
     >>> with_pairs(one, 1.0, np.array([[0.0, 1.5], [1.5, 0.0]])).round(2)
     array([[0.6 , 0.4 ],
-           [0.27, 0.73]])
+           [0.73, 0.27]])
     >>> bool((with_pairs(one, 0.0, np.ones((2, 2))) == one).all())
     True
     """

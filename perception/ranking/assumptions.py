@@ -23,7 +23,7 @@ from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
 
 from ..identification.laboratory_draws import LaboratoryDraws
-from ..observer.channels import CHANNELS
+from ..observer.channels import CHANNELS, FORM
 from ..observer.mechanisms.site import on_forearm
 from ..observer.observer import Observer
 from ..observer.people import People, people_records
@@ -90,10 +90,15 @@ def explained_together(values: Array, predicted: Array) -> float:
 
 
 def scores_of(values: Array) -> Array:
-    """Normal scores (draws,) of the ranks of some values."""
+    """Normal scores (draws,) of the ranks of some values; equal ones have the mean of theirs.
+
+    >>> scores_of(np.array([1.0, 0.0, 1.0, 0.0])).round(2).tolist()
+    [0.73, -0.73, 0.73, -0.73]
+    """
     count, scores = values.size, np.empty(values.size)
     scores[np.argsort(values, kind="stable")] = [NormalDist().inv_cdf((k + 0.5) / count) for k in range(count)]
-    return scores
+    _, places, equal = np.unique(values, return_inverse=True, return_counts=True)
+    return np.asarray((np.bincount(places, scores) / equal)[places])
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,14 +227,17 @@ def _of_people(fitted: PeopleFit, rig: Rig, observer: Observer) -> list[Assumpti
 
 
 def _of_draws(draws: LaboratoryDraws) -> list[Assumption]:
-    """Effects of constants between the ends of their 95 %, as parabolas in their normal scores."""
+    """Effects of constants between the ends of their 95 %, as parabolas in their normal scores.
+
+    The form of memory has no ends, and a ranking says what each form predicts.
+    """
     count = len(draws)
     predicted = draws.proportion_correct
     if count < FEWEST_DRAWS or np.ptp(predicted) == 0.0:
         return []
     found = []
     for name, values, acts in zip(draws.names, draws.values.T, draws.acting(), strict=True):
-        if not acts:
+        if not acts or name == FORM:
             continue
         scores = scores_of(values)
         design = np.stack([np.ones(count), scores, scores**2], axis=1)

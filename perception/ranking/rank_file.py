@@ -154,6 +154,7 @@ def _set(ranking: Ranking, asked: NewLaboratory | None) -> dict[str, Any]:
         "posterior_draws": asked.draws if asked else None,
         "posterior": asked.posterior if asked else None,
         "new_laboratory_people": asked.people if asked else None,
+        "new_laboratory_covers": list(asked.covers) if asked else None,
         "own_laboratory": ranking.own_laboratory,
         "doubt": doubts(asked.each) if asked else [],
         "rules_score": ranking.rules_score,

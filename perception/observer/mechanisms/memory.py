@@ -40,4 +40,4 @@ class Memory(Ratings, Gain):
 
 MEMORY_NAMES = (*names_of(Memory, "timing_noise", "rated_share", "missing_cost", "episode_bar", "pair_spread"), FORM)
 """Every number of memory that a table of draws may have a column for. No published posterior has them."""
-NOISE, MISSING = (names_of(Memory, field)[0] for field in ("timing_noise", "missing_cost"))
+NOISE, MISSING, PAIRS = (names_of(Memory, field)[0] for field in ("timing_noise", "missing_cost", "pair_spread"))

@@ -24,7 +24,7 @@ PROMISED = {
     "reachable safe reason cautions rules rules_score outside_data",
     "pair": "a b d_prime confused_probability why rules edit distinguishable_by_rules",
     "set": "proportion_correct proportion_correct_interval information_bits information_bits_interval bits_per_s "
-    "information_bits_plugin trials worst_pair rules_disagree norm_sensitivity rules_score rules "
+    "information_bits_plugin trials worst_pair rules_disagree proportion_correct_by_memory rules_score rules "
     "proportion_correct_interval_new_laboratory information_bits_interval_new_laboratory",
 }
 TOP, ICON, PAIR, SET = ({*words.split()} for words in PROMISED.values())
@@ -44,7 +44,7 @@ def test_the_json_has_the_promised_keys_and_the_details_its_numbers(cli: Cli, tw
     assert "NaN" not in text and "Infinity" not in text
     ranked = json.loads(text)
     assert set(ranked) >= TOP
-    assert (ranked["rig"], ranked["seed"], ranked["people"], ranked["memory"]) == ("thenar", 3, 8, "episodes")
+    assert (ranked["rig"], ranked["seed"], ranked["people"], ranked["memory"]) == ("thenar", 3, 8, "both")
     assert ranked["tracking"] == "display"  # what control display asks for
     for icon in ranked["icons"]:
         assert set(icon) >= ICON
@@ -226,9 +226,7 @@ def test_the_table_of_doubt_says_what_to_measure_first(cli: Cli, two: Path, tmp_
     assert words.startswith("Two for a test constant 95 % of draws named bits named low–high ")
     assert "What to measure first, with the share of the variance of what is named that it would remove: - " in words
     assert effects[0]["constant"].split()[0] in words
-    assert (
-        "64 draws for 3 virtual people on the thenar rig with contact.area_cm2=4 (seed 0, memory: episodes): " in words
-    )
+    assert "64 draws for 3 virtual people on the thenar rig with contact.area_cm2=4 (seed 0, memory: both): " in words
     units = {each["constant"]: each["unit"] for each in effects}
     assert (units["contact resistance"], units["thickness of the outermost layer"]) == ("m²·K/W", "mm")
     assert "memory noise (episodes)" in units and "degC" not in words and "d'" not in words
