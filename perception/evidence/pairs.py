@@ -21,6 +21,7 @@ from thermicon.circuit import Rig
 from thermicon.icons import load_library
 
 from ..identification.pairs import with_pairs
+from ..observer.channels import MemoryChoice
 from ..observer.constants import record_of
 from ..observer.observer import Observer
 from .identified import show
@@ -37,12 +38,8 @@ WITHIN_95 = 1.96
 
 def pair_spread(known: RecordTable) -> Record:
     """Median and 95 % of τ: the record of the prior, with what was named in its place."""
-    prior = record_of(known, Observer, "pair_spread")
-    low, high = np.log(prior.interval)
-    sd = (high - low) / (2.0 * WITHIN_95)
-    logs = np.log(TAUS)
-    score = np.log(likelihood(known)) - 0.5 * np.square((logs - np.log(prior.central)) / sd)
-    weights = np.exp(score - score.max())
+    prior, logs = record_of(known, Observer, "pair_spread"), np.log(TAUS)
+    weights = _prior(prior) * likelihood(known)
     share = (np.cumsum(weights) - 0.5 * weights) / weights.sum()
     ends = np.exp(np.interp([0.025, 0.5, 0.975], share, logs)).tolist()
     # Two figures: rounding on another machine does not show.
@@ -58,6 +55,26 @@ def pair_spread(known: RecordTable) -> Record:
     )
 
 
+def _prior(record: Record) -> Array:
+    """Weights of a log-normal prior at each of `TAUS`; they add up to 1."""
+    low, high = np.log(record.interval)
+    sd = (high - low) / (2.0 * WITHIN_95)
+    weights = np.exp(-0.5 * np.square((np.log(TAUS) - np.log(record.central)) / sd))
+    return np.asarray(weights / weights.sum())
+
+
+def log_evidence(known: RecordTable, memory: MemoryChoice) -> tuple[float, float]:
+    """Log evidence of what was published with some forms of memory: with the least spread of pairs, and by its prior.
+
+    >>> from thermicon.perception.observer.observer import load_thresholds
+    >>> without, by_prior = log_evidence(load_thresholds(), "episodes")
+    >>> without < by_prior
+    True
+    """
+    likely = likelihood(known, memory)
+    return float(np.log(likely[0])), float(np.log(_prior(record_of(known, Observer, "pair_spread")) @ likely))
+
+
 MEAN, BEST, WORST = (
     "mean; range over people",
     "linear decrease in skin temperature",
@@ -66,14 +83,14 @@ MEAN, BEST, WORST = (
 """Conditions of the published shares."""
 
 
-def likelihood(known: RecordTable) -> Array:
+def likelihood(known: RecordTable, memory: MemoryChoice = "both") -> Array:
     """Likelihood of what was published at each of `TAUS`, the mean over laboratories and their pairs."""
     shares = {record.conditions: record.central for record in known.select("icon identification")}
     mean, best, worst = (shares[conditions] for conditions in (MEAN, BEST, WORST))
     trials = PEOPLE * TRIALS
     most, least = round(best * trials), round(worst * trials)
     found = np.zeros(TAUS.size)
-    for named, scores in _laboratories():
+    for named, scores in _laboratories(memory):
         for place, tau in enumerate(TAUS.tolist()):
             # (pairs, people, icons): each person's share of right names, then the mean over people.
             each = with_pairs(named[None], tau, scores[:, None])
@@ -98,10 +115,10 @@ def extremes(p: Array, trials: int, least: int, most: int) -> Array:
     return inside(least, most) - inside(least + 1, most) - inside(least, most - 1) + inside(least + 1, most - 1)
 
 
-def _laboratories() -> Iterator[tuple[Array, Array]]:
+def _laboratories(memory: MemoryChoice) -> Iterator[tuple[Array, Array]]:
     """Confusions (people, icons, icons) of the participants of each laboratory, and scores (pairs, icons, icons)."""
     icons = tuple(load_library(SIX))
-    others = plausible_laboratories(LABORATORIES, SEED, "temperature")
+    others = plausible_laboratories(LABORATORIES, SEED, "temperature", memory)
     shown = show(icons, Rig.load(RIG), PEOPLE, SEED)
     chance = np.random.default_rng(np.random.SeedSequence([SEED, 16]))
     above: tuple[NDArray[np.int64], ...] = np.triu_indices(len(icons), 1)

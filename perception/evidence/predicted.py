@@ -16,7 +16,7 @@ from ..experiments.laboratory import PEOPLE, SEED, Laboratory
 from ..experiments.measure import Setting
 from ..identification.laboratory_draws import DrawnLaboratories
 from ..kernels.parallel import in_order
-from ..observer.channels import CHANNELS, Variable
+from ..observer.channels import CHANNELS, MemoryChoice, Variable
 from ..observer.draws import PosteriorDraws
 from ..observer.mechanisms.age import YOUNG_YEARS
 from ..observer.observer import Observer, variant_records
@@ -116,10 +116,10 @@ def interval_of(each: Sequence[float]) -> tuple[float | None, float | None]:
     return quantile_felt(ordered, 0.025), quantile_felt(ordered, 0.975)
 
 
-def plausible_laboratories(n: int, seed: int, variable: Variable) -> DrawnLaboratories:
+def plausible_laboratories(n: int, seed: int, variable: Variable, memory: MemoryChoice = "both") -> DrawnLaboratories:
     """Laboratories of n draws of the posterior of a variant."""
     posterior, records = PosteriorDraws.load(variable=variable), variant_records(variable)
-    return DrawnLaboratories.of(replace(ObserverModel.load(), records=records, posterior=posterior), "both", n, seed)
+    return DrawnLaboratories.of(replace(ObserverModel.load(), records=records, posterior=posterior), memory, n, seed)
 
 
 def plausible_observers(n: int, seed: int, variable: Variable = "temperature") -> tuple[Observer, ...]:

@@ -69,10 +69,18 @@ class NewLaboratory:
     @property
     def covers(self) -> tuple[str, ...]:
         """What varies between the draws, and is therefore in the intervals."""
-        values = dict(zip(self.each.names, self.each.values.T, strict=True))
-        found = ["people", "constants", "laboratory"]
-        found += ["form of memory"] * bool(np.ptp(values[FORM]))
-        return (*found, *["pairs of icons"] * (len(self.detected) > 1 and bool(np.max(values.get(PAIRS, 0.0)))))
+        found, pairs = ["people", "constants", "laboratory"], self.pair_spread
+        found += ["form of memory"] * bool(np.ptp(self._column(FORM)))
+        return (*found, *["pairs of icons"] * (pairs is not None and len(self.detected) > 1))
+
+    @property
+    def pair_spread(self) -> Interval | None:
+        """95 % of τ in these laboratories, ln; None where their pairs are those of the model."""
+        spreads = self._column(PAIRS) if PAIRS in self.each.names else np.zeros(1)
+        return interval_of(spreads) if spreads.max() > 0.0 else None
+
+    def _column(self, name: str) -> Array:
+        return self.each.values[:, self.each.names.index(name)]
 
     def pair(self, i: int, j: int, of: str = "d_prime") -> Interval:
         """Interval of the d′ of one pair, or of how often it is `confused`."""

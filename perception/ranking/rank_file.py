@@ -155,6 +155,7 @@ def _set(ranking: Ranking, asked: NewLaboratory | None) -> dict[str, Any]:
         "posterior": asked.posterior if asked else None,
         "new_laboratory_people": asked.people if asked else None,
         "new_laboratory_covers": list(asked.covers) if asked else None,
+        "pair_spread": asked.pair_spread if asked else None,
         "own_laboratory": ranking.own_laboratory,
         "doubt": doubts(asked.each) if asked else [],
         "rules_score": ranking.rules_score,

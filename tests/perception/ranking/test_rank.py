@@ -33,7 +33,7 @@ SET = (
     "information_bits_interval bits_per_s information_bits_plugin trials total_s total_J worst_pair rules_disagree "
     "proportion_correct_by_memory memory_changes felt_and_named_interval_new_laboratory "
     "proportion_correct_interval_new_laboratory information_bits_interval_new_laboratory posterior_draws posterior "
-    "new_laboratory_people new_laboratory_covers own_laboratory doubt rules_score rules"
+    "new_laboratory_people new_laboratory_covers pair_spread own_laboratory doubt rules_score rules"
 )
 
 
