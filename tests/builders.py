@@ -20,6 +20,8 @@ from thermicon.perception.identification.episodes import episode_distances, reme
 from thermicon.perception.identification.population import memory_dprime
 from thermicon.perception.identification.task import USUAL
 from thermicon.perception.observer.channels import MEMORY_FORMS
+from thermicon.perception.observer.mechanisms.memory import PAIRS
+from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.observer.people import People
 from thermicon.perception.selection.appraise import population_response
 
@@ -104,3 +106,12 @@ def weighted_quantile(
     order = np.argsort(values, kind="stable")
     place = np.cumsum(weights[order]) - 0.5 * weights[order]
     return tuple(float(q) for q in np.interp(shares, place, values[order]))
+
+
+def without_pairs() -> ObserverModel:
+    """The shipped model, with pairs that every laboratory confuses as its constants say."""
+    model = ObserverModel.load()
+    records = [
+        replace(each, value=0.0, low=0.0, high=0.0) if each.quantity == PAIRS else each for each in model.records
+    ]
+    return replace(model, records=replace(model.records, records=tuple(records)))

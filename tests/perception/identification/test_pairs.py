@@ -1,17 +1,15 @@
 """A laboratory has one form of memory and pairs of its own, and intervals for a new laboratory hold both."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
+from tests.builders import without_pairs
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
 from thermicon.perception import Ranking, rank
 from thermicon.perception.identification.laboratory_draws import DrawnLaboratories
 from thermicon.perception.identification.pairs import pair_scores, with_pairs
 from thermicon.perception.observer.channels import FORM
-from thermicon.perception.observer.mechanisms.memory import PAIRS
 from thermicon.perception.observer.observer_model import ObserverModel
 
 THREE = np.array([[0.8, 0.15, 0.05], [0.15, 0.7, 0.15], [0.1, 0.1, 0.8]])
@@ -59,11 +57,7 @@ def test_the_interval_holds_both_forms_and_pairs_and_says_so(ranking: Ranking) -
     assert found is not None and {"form of memory", "pairs of icons"} < set(found.covers)
     alone = rank(SIX, RIG, people=24, parameters=128, memory="episodes").new_laboratory
     assert alone is not None and "form of memory" not in alone.covers and "pairs of icons" in alone.covers
-    held = ranking.model.records
-    same = tuple(replace(each, value=0.0, low=0.0, high=0.0) if each.quantity == PAIRS else each for each in held)
-    without = rank(
-        SIX, RIG, people=24, parameters=128, observer=replace(ranking.model, records=replace(held, records=same))
-    )
+    without = rank(SIX, RIG, people=24, parameters=128, observer=without_pairs())
     assert without.new_laboratory is not None and "pairs of icons" not in without.new_laboratory.covers
     wide = found.proportion_correct
     for narrower in (alone.proportion_correct, without.new_laboratory.proportion_correct):

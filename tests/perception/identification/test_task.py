@@ -71,16 +71,15 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(monkeypatch: pytest.Mon
 
 @pytest.mark.slow
 def test_an_edit_parts_a_pair_in_the_task_asked_for() -> None:
-    task, wanted = Task(gap_s=60.0), 2.5
-    found = cheapest_edit(
-        rank(list(SIX), RIG, people=20, parameters=0, task=task), "warming-step", "linear-warming", wanted=wanted
-    )
+    how: dict[str, Any] = {"people": 20, "parameters": 0, "task": Task(gap_s=60.0), "memory": "episodes"}
+    wanted = 2.5
+    found = cheapest_edit(rank(list(SIX), RIG, **how), "warming-step", "linear-warming", wanted=wanted)
     assert isinstance(found, Edit)
     edited = replace(SIX, entries=tuple(found.edited if icon.name == found.icon else icon for icon in SIX))
-    after = rank(edited, RIG, people=20, parameters=0, task=task)
+    after = rank(edited, RIG, **how)
     pair = next(p for p in after.pairs if {p.a, p.b} == {"warming-step", "linear-warming"})
     assert pair.d_prime == pytest.approx(found.d_prime, rel=1e-3) and pair.d_prime >= wanted
-    before = {(p.a, p.b): p.d_prime for p in rank(SIX, RIG, people=20, parameters=0, task=task).pairs}
+    before = {(p.a, p.b): p.d_prime for p in rank(SIX, RIG, **how).pairs}
     for other in after.pairs:
         if {other.a, other.b} != {"warming-step", "linear-warming"}:
             assert other.d_prime > min(before[other.a, other.b] - 0.101, 2 * wanted)

@@ -90,7 +90,7 @@ def test_a_rough_table_of_few_people_comes_first_and_is_near(
     assert (rough.rough, rough.job.people, rough.draws, whole.rough, whole.draws) == (True, 24, 64, False, 80)
     for key in ("felt_and_named", "felt_and_named_95_percent_of_people_and_model"):
         ours, theirs = ([row[key] for row in each.rows()] for each in (rough, whole))
-        assert ours == pytest.approx(theirs, abs=0.03)
+        assert ours == pytest.approx(theirs, abs=0.05)
 
 
 def test_the_pool_of_a_frontier_is_ranked_when_it_is_asked_for(found: Frontier, six: IconSet, rig: Rig) -> None:

@@ -80,12 +80,12 @@ def test_what_comes_next_reaches_the_goal_where_any_of_its_ways_does(where: str)
     """By brute force: each choice of the icons, the edit of each pair, each area."""
     rng, rig = np.random.default_rng([7, [*RIGS].index(where)]), RIGS[where]
     reached, possible = 0, 0
-    for _ in range(6):
+    for _ in range(8):
         icons = parse(HEAD + "\n".join(
             f"icon i{k} {{ {rng.choice(['cool', 'warm'])} by {rng.uniform(0.3, 5):.1f} °C at {rng.uniform(1, 3):.1f} "
             f"°C/s; hold for {rng.choice([1, 2])} s; return at 2 °C/s }}" for k in range(4)
         ))  # fmt: skip
-        goal = Goal.parse(f"felt-and-named >= {rng.uniform(60, 97):.1f} % for {rng.choice([60, 90])} % of people")
+        goal = Goal.parse(f"felt-and-named >= {rng.uniform(50, 97):.1f} % for {rng.choice([60, 90])} % of people")
         ranking = rank(icons, rig, **CROWD)  # type: ignore[arg-type]
         before = judge_goal(goal, ranking)
         if before.met:
