@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 from table_text import UNITS, markdown, number, signed, span
@@ -18,6 +19,7 @@ from thermicon.perception.evidence.results import (
     load_ablation,
     load_constants,
     load_predictions,
+    read_rows,
 )
 from thermicon.perception.evidence.rows import load_evidence, load_rows
 from thermicon.perception.observer.constants import names_of
@@ -96,6 +98,55 @@ def ablation_table() -> str:
     return markdown(("observer", "what stands in its place", "log evidence", "Σ(miss/SD)²", "worst row (SD)"), lines)
 
 
+@dataclass(frozen=True, slots=True)
+class Influence:
+    """Maximum of the posterior without some experiments, with 95 % intervals.
+
+    `log_score` is the log density of their own rows under all others (0: nothing was left out). `corneum` is the share
+    of the stratum corneum that counts, `cold` and `warm` are exponents of area, `over_back` and `over_finger` cold
+    limits of the palm over those of the back of the hand and the fingers. `moving` is the log evidence of bounds that
+    move with the resting skin, over that of bounds that stay.
+    """
+
+    left_out: str
+    log_score: float
+    corneum: float
+    corneum_low: float
+    corneum_high: float
+    cold: float
+    cold_low: float
+    cold_high: float
+    warm: float
+    warm_low: float
+    warm_high: float
+    over_back: float
+    over_finger: float
+    moving: float
+
+
+INFLUENCE = "influence.csv"
+
+
+def load_influence() -> tuple[Influence, ...]:
+    """What single experiments do, all of them first."""
+    return tuple(read_rows(INFLUENCE, Influence))
+
+
+def influence_table() -> str:
+    """Constants that single experiments move, with and without each."""
+    lines = []
+    for each in load_influence():
+        said = signed(each.log_score, 1) if each.left_out else ""
+        corneum = f"{number(each.corneum)} ({span(each.corneum_low, each.corneum_high)})"
+        cold = f"{number(each.cold)} ({span(each.cold_low, each.cold_high)})"
+        warm = f"{number(each.warm)} ({span(each.warm_low, each.warm_high)})"
+        palms = number(each.over_back), number(each.over_finger)
+        lines.append((each.left_out or "nothing", said, corneum, *palms, cold, warm, signed(each.moving, 1)))
+    head = ("left out", "log score of its rows", "share of the stratum corneum", "palm over back of the hand, cold")
+    more = "palm over fingers, cold", "cold exponent of area", "warm exponent of area", "bounds that move, log evidence"
+    return markdown((*head, *more), lines)
+
+
 def left_out_table() -> str:
     """Every row: published, fitted, and predicted by a fit without its experiment; misses are bold."""
     lines = []
@@ -161,6 +212,7 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "offsets": offsets_table,
     "unmoved": unmoved_sentence,
     "ablation": ablation_table,
+    "influence": influence_table,
     "left out": left_out_table,
     "coverage": coverage_sentence,
     "predicted": predicted_table,

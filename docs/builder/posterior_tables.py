@@ -204,8 +204,8 @@ def scores_sentence() -> str:
     kinds = ", ".join(f"{count} {kind}s" for kind, count in Counter(each.row.kind for each in rows).items())
     return (
         f"{inside[0]} of {len(rows)} rows ({kinds}) lie inside their 50 % interval and {inside[1]} inside their "
-        f"95 % interval; of the {len(spread)} spreads, which judge nothing, {wide[0]} and {wide[1]}. E8 and E9 are not "
-        "counted. "
+        f"95 % interval; of the {len(spread)} spreads, which judge nothing, {wide[0]} and {wide[1]}. E8 and signs are "
+        "not counted. "
         f"Half of the 95 % intervals of ratios span less than a factor of {ratios[len(ratios) // 2]:.1f}. "
         f"On {len(compared)} rows of a kind that two other experiments have, the log score is {signed(gain, 2)} a row "
         f"over the naive baseline. "

@@ -40,7 +40,7 @@ class Posterior:
 
     >>> posterior = Posterior()
     >>> len(posterior.priors), len(posterior.rows)
-    (55, 61)
+    (55, 67)
     """
 
     variable: Variable = "temperature"

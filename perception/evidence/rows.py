@@ -16,8 +16,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from thermicon.base.files.records import RecordError
 from thermicon.base.words.near_words import did_you_mean
 
-from ..experiments.published import Key
-from ..experiments.tasks import DISCREPANCY, UNSTATED
+from ..experiments.tasks import DISCREPANCY, UNSTATED, Key
 from ..observer.channels import CHANNELS
 from ..observer.observer import DATA, load_thresholds
 
@@ -112,14 +111,14 @@ def read_evidence(statistics: Path, experiments: Path) -> Evidence:
     return Evidence(tuple(rows), by_key, missed)
 
 
-Kind = Literal["level", "ratio", "share", "spread", "correlation", "order"]
+Kind = Literal["level", "ratio", "share", "spread", "correlation", "sign"]
 DISCREPANCIES: dict[Kind, float] = {
     "level": DISCREPANCY,
     "ratio": DISCREPANCY,
     "share": DISCREPANCY,
     "spread": 0.35,
     "correlation": 0.05,
-    "order": 0.0,
+    "sign": 0.0,
 }
 """What a model of this kind may miss a row by, as a share of it (a correlation: by itself); assumed.
 
@@ -158,7 +157,7 @@ class Row:
     @property
     def judges(self) -> bool:
         """Whether coverage is judged by it: no form or number of the model was chosen by such rows."""
-        return self.kind not in ("spread", "order") and self.experiment != "E8"
+        return self.kind not in ("spread", "sign") and self.experiment != "E8"
 
     def shown(self, place: float) -> float:
         """A value or prediction in the row's own unit."""
@@ -287,7 +286,12 @@ STATISTICS: tuple[tuple[str, str, tuple[str, ...], str, Kind], ...] = (
     ("E5", "share_called_warm_peak3_age_lt36", ("cold",), "cooling called warm after 45 °C", "share"),
     ("E5", "share_called_warm_peak4_age_lt36", ("cold",), "cooling called warm after 47 °C", "share"),
     ("E6", "rating_local_exponent_mean", BOTH, "exponent of ratings by size", "ratio"),
-    ("E9 Greenspan", "ratio_limits_thenar_over_forearm", ("cold",), "limits, thenar over forearm", "order"),
-    ("E9 Hagander", "ratio_limits_thenar_over_wrist", BOTH, "limits, thenar over wrist", "order"),
-    ("E9 Wakolbinger", "ratio_limits_palm_over_dorsum", BOTH, "limits, palm over back of the hand", "order"),
+    ("E9 Greenspan", "ratio_limits_thenar_over_forearm", ("cold",), "limits, thenar over forearm", "sign"),
+    ("E9 Hagander", "ratio_limits_thenar_over_wrist", BOTH, "limits, thenar over wrist", "sign"),
+    ("E9 Wakolbinger", "ratio_limits_palm_over_dorsum", BOTH, "limits, palm over back of the hand", "sign"),
+    ("E10", "ratio_limits_palm_over_finger", BOTH, "limits, palm over fingers", "sign"),
+    ("E11", "three_fingers_match_two", BOTH, "change of three fingers over two", "ratio"),
+    ("E12", "ratio_zone_width_cool_over_warm_skin", ("both",), "width from cool to warm, rest at 27 over 32 °C",
+     "sign"),
+    ("E13", "ratio_thresholds_from_40_over_36", ("warm",), "forced choice, rest at 40 over 36 °C", "sign"),
 )  # fmt: skip

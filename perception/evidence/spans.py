@@ -1,7 +1,7 @@
 """Spans of what the experiments behind the constants play.
 
 A laboratory that writes down what is played in it runs each experiment once, so that a row with other conditions moves
-a span by itself.
+a span by itself. Experiments whose rows are all signs move none.
 """
 
 from __future__ import annotations
@@ -13,12 +13,14 @@ from itertools import pairwise
 from thermicon.base.numbers.arrays import Array
 
 from ..experiments.laboratory import Corner, Laboratory
-from ..experiments.published import AGES_YEARS, EXPERIMENTS, Key
+from ..experiments.published import AGES_YEARS, EXPERIMENTS
+from ..experiments.tasks import Key
 from ..observer.channels import Channel
 from ..observer.constants import Both
 from ..observer.observer import Observer
 from ..observer.priors import LABORATORIES
 from ..sensation.coverage import RESPECTS, EvidenceSpan
+from .rows import load_rows
 
 FEW = 2
 """People in the laboratory: who is asked changes nothing of what is played."""
@@ -52,11 +54,16 @@ class WritingLaboratory(Laboratory):
 
 def spans_of(experiments: Iterable[Simulated] = EXPERIMENTS) -> tuple[EvidenceSpan, ...]:
     """The span of each respect over some experiments, with the experiments at its ends."""
+    signs = {row.key for row in load_rows() if row.kind == "sign"}
     offsets = dict.fromkeys(LABORATORIES, Both(0.0, 0.0))
     values: dict[str, list[tuple[float, str]]] = {}
     for experiment in experiments:
         laboratory = WritingLaboratory.of(Observer.load(), offsets, FEW)
-        names = dict.fromkeys(key[0] for key, _ in experiment(laboratory))
+        keys = [key for key, _ in experiment(laboratory)]
+        # A direction says next to nothing of the conditions it was found under, some of which are assumed.
+        if signs.issuperset(keys):
+            continue
+        names = dict.fromkeys(key[0] for key in keys)
         ages = [("age", years) for name in names for years in AGES_YEARS.get(name, ())]
         for respect, value in (*laboratory.played, *ages):
             values.setdefault(respect, []).append((value, ", ".join(names)))

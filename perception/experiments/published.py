@@ -12,11 +12,9 @@ import numpy as np
 from thermicon.base.numbers.arrays import Array
 
 from ..observer.channels import CHANNELS, Channel
+from .abstracts import LIMIT_K, cool_skin, matched_fingers, order_of_sites, warm_skin
 from .laboratory import DT_S, Laboratory, samples_of
-from .tasks import DisplayRamp, Stimulated, yes_no_logs
-
-Key = tuple[str, str, str]
-"""Experiment, statistic, channel."""
+from .tasks import DisplayRamp, Key, Stimulated, yes_no_logs
 
 Predictions = dict[Key, float]
 LN10 = math.log(10.0)
@@ -32,8 +30,6 @@ AGES_YEARS = {"E4": (21.0, 80.0)}
 """Youngest and oldest of the people whose rows follow age."""
 ANTICIPATION_K = 0.2
 """Earlier presses of E3 were left out (evidence.toml)."""
-LIMIT_K = 12.0
-"""Where ramps of E3 end here: far above every threshold."""
 
 
 def predict(laboratory: Laboratory) -> Predictions:
@@ -93,30 +89,6 @@ def limits(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
         yield ("E3", "between_sd_log10_noise_removed", channel), float(person.std()) / LN10
         yield ("E3", "within_sd_log10_median_person", channel), float(np.median(np.nanstd(logs, axis=1))) / LN10
     yield ("E3", "cold_warm_correlation_log", "both"), _correlation(*means)
-
-
-ORDERS: tuple[tuple[str, str, float, tuple[str, str], tuple[str, str], tuple[Channel, ...]], ...] = (
-    ("Greenspan", "ratio_limits_thenar_over_forearm", 9.0, ("thenar", "hand"), ("forearm", "forearm"), ("cold",)),
-    ("Hagander", "ratio_limits_thenar_over_wrist", 9.0, ("thenar", "hand"), ("forearm", "forearm"), CHANNELS),
-    ("Wakolbinger", "ratio_limits_palm_over_dorsum", 2.56, ("thenar", "hand"), ("hand-dorsum", "hand"), CHANNELS),
-)
-"""Paper, statistic, area in cm² (9 is assumed), rig and site above and below the line of the ratio, channels."""
-
-
-def order_of_sites(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
-    """E9: limits at 1 K/s at one site over those of the same people at another."""
-
-    def limit(place: tuple[str, str], channel: Channel, area_cm2: float) -> float:
-        rig, site = place
-        played = Stimulated.of(laboratory, DisplayRamp.held(rig, channel, 32.0, LIMIT_K, 1.0, 0.0))
-        # Any laboratory's offset: both sites have it.
-        gain = laboratory.gain(channel, area_cm2, "E3", site, MEAN_AGE_YEARS["E3"])
-        return float(np.log(played.limits_K(gain, site)).mean())
-
-    for paper, statistic, area_cm2, above, below, channels in ORDERS:
-        for channel in channels:
-            ratio = limit(above, channel, area_cm2) - limit(below, channel, area_cm2)
-            yield (f"E9 {paper}", statistic, channel), ratio
 
 
 SIZES_K: dict[Channel, Array] = {"cold": np.geomspace(0.05, 25.0, 9), "warm": np.geomspace(0.3, 20.0, 9)}
@@ -251,6 +223,9 @@ EXPERIMENTS: tuple[Callable[[Laboratory], Iterator[tuple[Key, float]]], ...] = (
     quality_in_haste,
     limits,
     order_of_sites,
+    matched_fingers,
+    cool_skin,
+    warm_skin,
     yes_no,
     after_warmth,
     forced_choice,

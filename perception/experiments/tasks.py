@@ -15,6 +15,8 @@ from thermicon.base.numbers.arrays import Array
 from ..observer.channels import SIGN, Channel
 from .laboratory import DT_S, FEEBLE, Corner, Laboratory, samples_of
 
+Key = tuple[str, str, str]
+"""Experiment, statistic, channel: what a published number goes by."""
 DISCREPANCY = 0.05
 """What a model of this kind may miss a published or measured value by, as a share; assumed."""
 UNSTATED = 0.10

@@ -16,8 +16,8 @@ from ..constants import Both, constant
 from .bounds import Bounds
 
 RESTS_C = (30.0, 34.25)
-"""Where receptors rest in the experiments, under skin of 30 to 34 °C. How it is elsewhere none says: as at the nearer
-end, which is assumed."""
+"""Where receptors rest in the experiments, under skin of 30 to 34 °C. Elsewhere abstracts have directions at most: it
+is assumed to be as at the nearer end."""
 
 
 @dataclass(frozen=True, kw_only=True)

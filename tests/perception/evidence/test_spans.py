@@ -6,8 +6,10 @@ import pytest
 
 from thermicon.perception.evidence.results import SPANS, inputs_digest
 from thermicon.perception.evidence.spans import spans_of
+from thermicon.perception.experiments.abstracts import cool_skin, warm_skin
 from thermicon.perception.experiments.laboratory import Laboratory
-from thermicon.perception.experiments.published import EXPERIMENTS, Key
+from thermicon.perception.experiments.published import EXPERIMENTS
+from thermicon.perception.experiments.tasks import Key
 from thermicon.perception.observer.draws_file import current_inputs
 from thermicon.perception.observer.observer import DATA
 from thermicon.perception.sensation.coverage import RESPECTS, EvidenceSpan, load_spans
@@ -46,3 +48,15 @@ def test_another_experiment_moves_every_span_to_its_conditions(shipped: dict[str
         assert getattr(moved, there) == pytest.approx(value)
         assert getattr(moved, f"{there}_of") == "E99"
         assert getattr(moved, kept) == getattr(shipped[respect], kept)
+
+
+def test_a_sign_moves_no_span_but_a_number_from_the_same_skin_does(shipped: dict[str, EvidenceSpan]) -> None:
+    def measured(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
+        for experiment in (cool_skin, warm_skin):
+            for _, value in experiment(laboratory):
+                yield ("E99", "threshold", "warm"), value
+
+    rest, wider = shipped["rest"], {span.respect: span for span in spans_of((*EXPERIMENTS, measured))}["rest"]
+    assert cool_skin in EXPERIMENTS and warm_skin in EXPERIMENTS
+    assert (rest.low, rest.high) == (30.0, 34.0)
+    assert (wider.low, wider.high) == (27.0, 40.0)
