@@ -46,6 +46,16 @@ def test_ablation_and_predictions_are_complete() -> None:
     assert tables.coverage_sentence().startswith(f"{inside} of {len(judging)} rows") and len(judging) == 36
 
 
+def test_experiments_that_disagree_pull_a_constant_apart() -> None:
+    """E9 wants the palm no less sensitive than the forearm, E10 more sensitive than the fingers."""
+    without = {each.left_out: each for each in tables.load_influence()}
+    assert len(body(tables.influence_table())) == len(without)
+    assert without["E10"].corneum < without[""].corneum < without["E9"].corneum
+    assert without["E10"].over_finger > without[""].over_finger > without["E9"].over_finger
+    # Of cool skin only what moves with it says anything.
+    assert without["E12"].moving < without[""].moving < 0.0
+
+
 def test_stacking_mixes_variants_that_are_good_at_different_rows() -> None:
     np.testing.assert_allclose(stacking_weights(np.array([[0.0, 0.0], [-9.0, -9.0]])), [1.0, 0.0], atol=5e-3)
     weights = stacking_weights(np.log(np.array([[0.9, 0.9, 0.1], [0.1, 0.1, 0.9]])))
