@@ -1,6 +1,6 @@
 """Tables of the sampled posterior as Markdown.
 
-Left-out predictions, variants and forms of memory are finished comparisons: tables that state their version.
+Left-out predictions and variants are finished comparisons: tables that state their version.
 """
 
 from __future__ import annotations
@@ -31,19 +31,6 @@ class VariantScores(OfRow):
 
 
 @dataclass(frozen=True, slots=True)
-class FormScore:
-    """One published row as one form of memory predicts it: value, 95 % of draws, and log score."""
-
-    norm: str
-    row: str
-    published: str
-    predicted: float
-    low: float
-    high: float
-    log_score: float
-
-
-@dataclass(frozen=True, slots=True)
 class LeftOutRow(OfRow):
     """One row predicted by draws of a posterior that never saw its experiment; numbers in the row's own unit.
 
@@ -70,7 +57,7 @@ class LeftOutRow(OfRow):
         return abs(self.probability - 0.5) <= 0.5 * share
 
 
-SCORES, FORMS, LEFT_OUT = "variant-scores.csv", "memory_forms.csv", "left-out.csv"
+SCORES, LEFT_OUT = "variant-scores.csv", "left-out.csv"
 
 
 def load_left_out() -> tuple[LeftOutRow, ...]:
@@ -233,19 +220,6 @@ def variants_sentence() -> str:
     )
 
 
-def forms_table() -> str:
-    """Scores of forms of memory, with the sum of each form."""
-    rows, lines = list(read_rows(FORMS, FormScore)), []
-    for form in dict.fromkeys(one.norm for one in rows):
-        own = [one for one in rows if one.norm == form]
-        for one in own:
-            ends = span(one.low, one.high)
-            lines.append((f"`{form}`", one.row, one.published, number(one.predicted), ends, f"{one.log_score:.1f}"))
-        total = f"**{sum(one.log_score for one in own):.1f}**"
-        lines.append((f"`{form}`", "**all rows**", "", "", "", total))
-    return markdown(("memory", "row", "published", "predicted", "95 %", "log score"), lines)
-
-
 TABLES: Mapping[str, Callable[[], str]] = {
     **INFERRED,
     "posterior": posterior_table,
@@ -255,6 +229,5 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "left out spreads": lambda: sampled_left_out_table(spreads=True),
     "scores": scores_sentence,
     "variants": variants_sentence,
-    "forms of memory": forms_table,
 }
 """Every table of the pages by the name that a page's mark gives, those of the inference included."""
