@@ -22,7 +22,7 @@ from thermicon.base.words.number_text import percent, percent_span
 
 from ..experiments.measure import Setting
 from ..identification.pairs import pair_scores
-from .evened import evened
+from .evened import evened, smoothed
 from .likelihood import PooledLikelihood, Target, effective, log_likelihoods, normalised_weights, systematic, walk
 from .measurement_likelihood import Emulator, SimulatedMeasurements, log_likelihood, predicted
 from .measurements_file import Measurements
@@ -97,34 +97,33 @@ def _sampled(
     logs, scores = data.weighed(simulated, rng)
     weights = normalised_weights(logs)
     size = effective(weights)
-    if size >= min(LEAST_EFFECTIVE, LEAST_SHARE * len(before)):
-        chosen, left, rounds = systematic(weights, kept, rng), size, 0
-        after, scores = _other_people(before.of(chosen), rng), scores[chosen]
-        found: Any = data.simulate(after, step) if data.by_people else simulated.of(chosen)
-    else:
-        after, found, scores, left, rounds = _refreshed(data, before, simulated, kept, rng, step)
-    return Conditioned(before, simulated, size, after, data.with_scores(found, scores), scores, left, rounds)
+    if size < min(LEAST_EFFECTIVE, LEAST_SHARE * len(before)):
+        return Conditioned(before, simulated, size, *_refreshed(data, before, simulated, kept, rng, step))
+    chosen = systematic(weights, kept, rng)
+    after, scores = _other_people(before.of(chosen), rng), scores[chosen]
+    found: Any = data.with_scores(data.simulate(after, step), scores) if data.by_people else simulated.of(chosen)
+    return Conditioned(before, simulated, size, after, found, scores, size, 0)
 
 
 def _refreshed(
     data: Data, some: Laboratories, simulated: Any, kept: int, rng: np.random.Generator, step: Step | None
 ) -> tuple[Laboratories, Any, Array, float, int]:
     """Fresh laboratories, what is simulated there, scores, how many are effective, and the rounds that it took."""
-    before, (logs, _) = some, data.likelihood(simulated, rng)
+    before, (logs, *_) = some, data.likelihood(some, simulated, rng)
     for rounds in range(1, data.rounds + 1):
         target = data.polynomial(some, simulated, logs, rng)
         start = before.of(rng.integers(len(before), size=kept))
         start = start.of(np.argsort(start.form, kind="stable"))
         fresh = _other_people(Laboratories(*_walked(start, target, rng)), rng)
         found: Any = data.simulate(fresh, step)
-        own, scores = data.likelihood(found, rng)
+        own, scores, answered = data.likelihood(fresh, found, rng)
         missed = own - target(fresh.place, fresh.form)
         if rounds == data.rounds or effective(normalised_weights(missed)) >= LEAST_SHARE * kept:
             break
         some, simulated, logs = some.joined(fresh), simulated.joined(found), np.concatenate([logs, own])
     share = _tempered(missed, LEAST_SHARE * kept)
     chosen = systematic(share, kept, rng)
-    return fresh.of(chosen), found.of(chosen), scores[chosen], effective(share), rounds
+    return fresh.of(chosen), answered.of(chosen), scores[chosen], effective(share), rounds
 
 
 def _walked(
@@ -198,14 +197,16 @@ class Namings:
 
         Each participant is integrated over people.
         """
-        scores, less = PairPosterior.of(simulated, self.trials.counts).drawn(simulated.icons, rng)
-        answered = simulated.with_scores(scores).probability
-        return np.asarray(log_likelihoods(answered, self.trials.counts).sum(axis=1) + less), scores
+        scores, answered, likelier = PairPosterior.of(simulated, None, self.trials.counts).drawn(rng)
+        each = log_likelihoods(answered.probability, self.trials.counts)
+        return np.asarray(each.sum(axis=1) + likelier), scores
 
-    def likelihood(self, simulated: Confusions, rng: np.random.Generator) -> tuple[Array, Array]:
-        """Ln likelihood (laboratories,) of the answers of all together, and pairs that they make likely."""
-        found = PairPosterior.of(simulated, self.trials.counts)
-        return found.log_likelihood, found.drawn(simulated.icons, rng)[0]
+    def likelihood(
+        self, some: Laboratories, simulated: Confusions, rng: np.random.Generator
+    ) -> tuple[Array, Array, Confusions]:
+        """Ln likelihood (laboratories,) of all answers together, scores that they make likely, confusions with them."""
+        found = PairPosterior.of(*smoothed(some, simulated), self.trials.counts)
+        return found.log_likelihood, *found.drawn(rng)[:2]
 
     def polynomial(self, some: Laboratories, simulated: Confusions, logs: Array, rng: np.random.Generator) -> Target:
         """Ln likelihood of the pooled answers."""
@@ -288,7 +289,11 @@ class MeasuredValues:
         """Ln likelihood (laboratories,) of all values, and scores of no icons."""
         return log_likelihood(self.measurements, simulated), np.zeros((len(simulated.mean), 0, 0))
 
-    likelihood = weighed
+    def likelihood(
+        self, some: Laboratories, simulated: SimulatedMeasurements, rng: np.random.Generator
+    ) -> tuple[Array, Array, SimulatedMeasurements]:
+        """The same, and the values as they are."""
+        return *self.weighed(simulated, rng), simulated
 
     def polynomial(
         self, some: Laboratories, simulated: SimulatedMeasurements, logs: Array, rng: np.random.Generator

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations_with_replacement
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -68,8 +68,8 @@ def effective(weights: Array) -> float:
 
 DIRECTIONS, LEAST_RATIO = 10, 0.05
 """At most so many directions, each with a variance between laboratories of at least this share of V."""
-STRONGEST = 8
-"""Coordinates whose products are fitted: no pair of weaker ones shows."""
+STRONGEST = 6
+"""Coordinates whose squares and products are fitted: more of them blur a fit to some hundred laboratories."""
 PENALTIES = tuple(10.0 ** (k / 2) for k in range(9))
 RIDGE = 1e-9
 """Least variance of a cell of the pooled answers, as a share of the mean over cells: far above rounding, and far below
@@ -77,29 +77,40 @@ the variance of the rarest answer."""
 STEPS, RISING, STEP = 1500, 0.5, 0.3
 """Steps of a walk, the share of them in which the power of the likelihood rises to 1, and the first step size."""
 ACCEPTED = 0.3
+LEAST_SPREAD = 1e-3
+"""Spread of pairs (ln) that is as good as none."""
 WEIGHED = 25
 """Steps of a rising power after which chains are resampled, so that each form of memory has as many as it is likely."""
 
 
 @dataclass(frozen=True, slots=True)
 class Polynomial:
-    """Pooled answers (directions,) of laboratories with one form of memory, and the `variance` about them."""
+    """Pooled answers of laboratories with one form of memory, in directions in which their errors are independent.
 
+    `coefficients` (features, directions) predict `observed` (directions,), with a variance of 1 and that of pairs of a
+    laboratory, which is `by_spread` (directions,) times the square of their spread; `log_spread` (features,) predicts
+    that. `scale` is the ln of the size of the directions.
+    """
+
+    observed: Array
     coefficients: Array
+    by_spread: Array
+    log_spread: Array
     pairs: tuple[tuple[int, int], ...]
-    variance: Array
+    scale: float
 
-    def log_likelihood(self, observed: Array, place: Array) -> Array:
-        """Ln likelihood (n,) of what was observed at coordinates (n, d)."""
-        off = observed - features_of(place, self.pairs) @ self.coefficients
-        return np.asarray(-0.5 * (np.square(off) / self.variance + np.log(self.variance)).sum(axis=1))
+    def __call__(self, place: Array) -> Array:
+        """Ln likelihood (n,) at coordinates (n, d), up to a constant that all forms share."""
+        features = features_of(place, self.pairs)
+        variance = 1.0 + np.exp(2.0 * features @ self.log_spread)[:, None] * self.by_spread
+        off = self.observed - features @ self.coefficients
+        return np.asarray(self.scale - 0.5 * (np.square(off) / variance + np.log(variance)).sum(axis=1))
 
 
 @dataclass(frozen=True, slots=True)
 class PooledLikelihood:
-    """Ln likelihood of pooled answers, `observed` (directions,), with a polynomial for each form of memory."""
+    """Ln likelihood of pooled answers by a polynomial for each form of memory."""
 
-    observed: Array
     by_form: Mapping[int, Polynomial]
 
     @classmethod
@@ -114,37 +125,43 @@ class PooledLikelihood:
         shown = counts.sum(axis=2)
         # All answers to an icon together have no variance: rows that do not add up to 1 would give them some below 0.
         people = normalised(np.asarray(played.probability, dtype=np.float64))
-        # Pairs of both signs, so that the mean over scores is nearly free of chance.
-        more, less = (_expected(played.with_scores(sign * scores).pooled, shown) for sign in (1.0, -1.0))
-        mean, half = 0.5 * (more + less), 0.5 * (more - less)
-        noise = _noise(people, shown, own) + (half * (own / len(own))[:, None]).T @ half
+        noise = _noise(people, shown, own)
         least = RIDGE * float(np.trace(noise)) / len(noise)
         root: Any = np.linalg.cholesky(noise + least * np.eye(len(noise)))
-        middle = mean.mean(axis=0)
-        whitened: Array = np.linalg.solve(root, (mean - middle).T).T
-        seen: Array = np.linalg.solve(root, counts.sum(axis=0).ravel() - middle)
+        # Pairs of both signs, so that the mean over scores is nearly free of chance.
+        more, less = (_expected(played.with_scores(sign * scores).pooled, shown) for sign in (1.0, -1.0))
+        middle = 0.5 * (more + less).mean(axis=0)
+        rows = (counts.sum(axis=0).ravel()[None] - middle, 0.5 * (more + less) - middle, 0.5 * (more - less))
+        seen, whitened, by_pairs = np.split(np.linalg.solve(root, np.vstack(rows).T).T, [1, 1 + len(some)])
         groups = {form: np.flatnonzero(some.form == form) for form in np.unique(some.form).tolist()}
         fits = {form: smooth_features(some.place[which], whitened[which], own[which]) for form, which in groups.items()}
         smooth = np.empty(whitened.shape)
         for form, which in groups.items():
-            smooth[which] = fits[form][2]
+            smooth[which] = fits[form][0] @ ridge(fits[form][0], whitened[which], own[which])[0]
         # Directions of the smooth part: differences between simulated people are not a property of a laboratory.
         sizes, turned = np.linalg.eigh(np.cov(smooth.T, aweights=own))
         used = np.flatnonzero(sizes > LEAST_RATIO)[::-1][:DIRECTIONS]
         turned = turned[:, used] if used.size else turned[:, -1:]
+        spread = np.maximum(played.spread, LEAST_SPREAD)
         by_form = {}
         for form, which in groups.items():
-            features, pairs, _ = fits[form]
+            features, pairs = fits[form]
             coefficients, missed = ridge(features, whitened[which] @ turned, own[which])
-            by_form[form] = Polynomial(coefficients, pairs, 1.0 + missed)
-        return cls(seen @ turned, by_form)
+            log_spread = ridge(features, np.log(spread[which])[:, None], own[which])[0][:, 0]
+            half = by_pairs[which] @ turned / np.sqrt((1.0 + missed) * (own[which] @ np.square(spread[which])))
+            by_spread, axes = np.linalg.eigh((half * own[which, None]).T @ half)
+            axes = axes / np.sqrt(1.0 + missed)[:, None]
+            scale = -0.5 * float(np.log1p(missed).sum())
+            observed = (seen @ turned @ axes)[0]
+            by_form[form] = Polynomial(observed, coefficients @ axes, by_spread.clip(0.0), log_spread, pairs, scale)
+        return cls(by_form)
 
     def __call__(self, place: Array, form: NDArray[np.int64]) -> Array:
         """Ln likelihood (n,) at coordinates (n, d) with forms of memory (n,), up to a constant."""
         found = np.empty(len(place))
         for own, polynomial in self.by_form.items():
             which = form == own
-            found[which] = polynomial.log_likelihood(self.observed, place[which])
+            found[which] = polynomial(place[which])
         return found
 
 
@@ -212,20 +229,21 @@ def _noise(people: Array, shown: Array, weight: Array) -> Array:
     return np.asarray(noise)
 
 
-def smooth_features(place: Array, values: Array, weight: Array) -> tuple[Array, tuple[tuple[int, int], ...], Array]:
-    """Features, the products among them, and what linear terms and squares explain of values (n, cells)."""
+def smooth_features(place: Array, values: Array, weight: Array) -> tuple[Array, tuple[tuple[int, int], ...]]:
+    """Features that explain values (n, cells), and the products among them."""
     plain = features_of(place, ())
     slopes, _ = ridge(plain, values, weight)
-    smooth = plain @ slopes
-    strength = np.square(slopes[1 : 1 + place.shape[1]]).sum(axis=1)
-    pairs = tuple(combinations(sorted(np.argsort(-strength)[:STRONGEST].tolist()), 2))
-    return features_of(place, pairs), pairs, smooth
+    strength = np.square(slopes[1:]).sum(axis=1)
+    strongest = sorted(np.argsort(-strength)[:STRONGEST].tolist())
+    pairs = tuple(combinations_with_replacement(strongest, 2))
+    return features_of(place, pairs), pairs
 
 
 def features_of(place: Array, pairs: tuple[tuple[int, int], ...]) -> Array:
-    """Features (n, features) of coordinates: a constant, linear terms, squares, and the products of some pairs."""
+    """Features (n, features) of coordinates: a constant, linear terms, and squares and products of some pairs."""
     first, second = [a for a, _ in pairs], [b for _, b in pairs]
-    return np.hstack([np.ones((len(place), 1)), place, np.square(place) - 1.0, place[:, first] * place[:, second]])
+    products = place[:, first] * place[:, second] - np.equal(first, second)
+    return np.hstack([np.ones((len(place), 1)), place, products])
 
 
 def ridge(features: Array, values: Array, weight: Array) -> tuple[Array, Array]:

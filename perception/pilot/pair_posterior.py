@@ -1,13 +1,13 @@
 r"""What answers say of the pairs of a laboratory, given its constants.
 
 The pooled answers to an icon are multinomial. Their ln odds against its own name are those of the laboratory's people,
-plus τz of the pair, plus what J participants happen to be:
+plus τz of the pair, what a smooth prediction misses, and what J participants happen to be:
 
     θ = ln odds(ℓ) + w,   w ~ N(0, K)
-    K[ab, cd] = τ²·[{a, b} = {c, d}] + R[ab, cd]·Σ_j n_ja n_jc / (Σ_j n_ja Σ_j n_jc)
+    K[ab, cd] = τ²·[{a, b} = {c, d}] + M[ab, cd] + R[ab, cd]·Σ_j n_ja n_jc / (Σ_j n_ja Σ_j n_jc)
 
 R is the relative covariance of people, the mean over laboratories. The posterior of w is taken as normal about its mode
-(Laplace), whose z is then drawn; with w integrated, it is the likelihood of the laboratory.
+(Laplace), from which z and what was missed are drawn; with w integrated, it is the likelihood of the laboratory.
 """
 
 from __future__ import annotations
@@ -25,94 +25,87 @@ from .playing import Confusions
 
 MOST_PAIRS = 45
 """Pairs that answers may move: of sets of more than 10 icons those that are confused most, or were."""
-PASSES, STEPS, LONGEST = 3, 6, 1.0
+PASSES, STEPS, LONGEST = 3, 5, 1.0
 """Passes with the people's own odds, Newton steps in each, and the longest step (ln)."""
 LEAST = 1e-9
+Places = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
 class PairPosterior:
-    """Normal posterior of the scores (laboratories, pairs) of `pairs`, and ln likelihood (laboratories,).
+    """Normal posterior of the scores (laboratories, pairs) of some pairs, and ln likelihood (laboratories,).
 
-    `root` (laboratories, pairs, pairs) is the lower root of the covariance.
+    With what a prediction misses, `mode` and lower `root` are of scores and of the ln odds missed in both cells of
+    every pair, (laboratories, 3 pairs).
     """
 
-    pairs: tuple[NDArray[np.int64], NDArray[np.int64]]
+    played: Confusions
+    first: Places
+    second: Places
     mode: Array
     root: Array
     log_likelihood: Array
 
     @classmethod
-    def of(cls, played: Confusions, counts: Array) -> PairPosterior:
+    def of(cls, played: Confusions, missed: Array | None, counts: Array) -> PairPosterior:
         """By answers (participants, icons, icons) to icons that are named as `played` where all pairs are usual.
 
-        A LinAlgError where a covariance cannot be factorised.
+        `missed` (laboratories, icons, icons) are ln odds by which such predictions were wrong, if they were. A
+        LinAlgError where a covariance cannot be factorised.
         """
         answers, pooled = counts.sum(axis=0), played.pooled
-        total = answers.sum(axis=1)
-        first, second = pairs = _chosen(total[:, None] * pooled.mean(axis=0) + answers)
+        total, count = answers.sum(axis=1), len(pooled)
+        first, second = _chosen(total[:, None] * pooled.mean(axis=0) + answers)
         row, column = np.concatenate([first, second]), np.concatenate([second, first])
-        same, spread = row[:, None] == row, played.spread
-        tied = np.tile(np.eye(len(first)), (2, 2))
+        same, spread, cells, pairs = row[:, None] == row, played.spread[:, None, None], len(row), len(first)
         people = _relative(played, pooled, row, column) * _shared(counts.sum(axis=2))[np.ix_(row, row)]
-        prior = np.square(spread)[:, None, None] * tied + people
-        scores, off = np.zeros(pooled.shape), np.zeros((len(pooled), len(row)))
+        # Effects: scores, and what is missed; `acts` leads from them to cells, `held` is their covariance.
+        off = None if missed is None else missed[:, row, column]
+        held = np.eye(pairs) if off is None else _block(np.eye(pairs), off.T @ off / count)
+        acts = np.broadcast_to(np.tile(np.eye(pairs), (2, 1)), (count, cells, pairs)) * spread
+        if off is not None:
+            acts = np.concatenate([acts, np.broadcast_to(np.eye(cells), (count, cells, cells))], axis=2)
+        reach = acts @ held
+        prior = reach @ np.swapaxes(acts, 1, 2) + people
+        log_odds, moved = np.zeros(pooled.shape), np.zeros((count, cells))
         for _ in range(PASSES):
-            shown = np.log(played.with_scores(scores).pooled)
-            usual = shown - np.diagonal(shown, axis1=1, axis2=2)[:, :, None] - spread[:, None, None] * scores
+            shown = np.log(played.with_log_odds(log_odds).pooled)
+            usual = shown - np.diagonal(shown, axis1=1, axis2=2)[:, :, None] - log_odds
             for _ in range(STEPS):
                 odds = usual.copy()
-                odds[:, row, column] += off
+                odds[:, row, column] += moved
                 share = np.exp(odds - np.logaddexp.reduce(odds, axis=2)[:, :, None])
                 chance = share[:, row, column]
                 steep = np.where(same, -(total[row] * chance)[:, :, None] * chance[:, None, :], 0.0)
-                steep[:, range(len(row)), range(len(row))] += total[row] * chance
+                steep[:, range(cells), range(cells)] += total[row] * chance
                 slope = answers[row, column] - total[row] * chance
-                inner = np.eye(len(row)) + steep @ prior
-                force = np.linalg.solve(inner, steep @ off[:, :, None] + slope[:, :, None])[:, :, 0]
-                off = off + np.clip((prior @ force[:, :, None])[:, :, 0] - off, -LONGEST, LONGEST)
-            mode = spread[:, None] * (force[:, : len(first)] + force[:, len(first) :])
-            scores[:, first, second] = scores[:, second, first] = mode
-        logs = (answers * np.log(share)).sum(axis=(1, 2)) - 0.5 * (force * off).sum(axis=1)
-        gained = np.linalg.solve(inner, steep)
-        halves = gained[:, :, : len(first)] + gained[:, :, len(first) :]
-        left = np.square(spread)[:, None, None] * (halves[:, : len(first)] + halves[:, len(first) :])
-        covariance = np.eye(len(first)) - 0.5 * (left + np.swapaxes(left, 1, 2))
-        root = np.linalg.cholesky(covariance + LEAST * np.eye(len(first)))
-        return cls(pairs, mode, root, np.asarray(logs - 0.5 * np.linalg.slogdet(inner)[1]))
+                inner = np.eye(cells) + steep @ prior
+                force = np.linalg.solve(inner, steep @ moved[:, :, None] + slope[:, :, None])
+                moved = moved + np.clip((prior @ force)[:, :, 0] - moved, -LONGEST, LONGEST)
+            mode = np.swapaxes(reach, 1, 2) @ force
+            log_odds[:, row, column] = (acts @ mode)[:, :, 0]
+        logs = (answers * np.log(share)).sum(axis=(1, 2)) - 0.5 * (force[:, :, 0] * moved).sum(axis=1)
+        known = np.swapaxes(reach, 1, 2) @ np.linalg.solve(inner, steep @ reach)
+        covariance = held - 0.5 * (known + np.swapaxes(known, 1, 2)) + LEAST * np.eye(len(held))
+        likelihood = np.asarray(logs - 0.5 * np.linalg.slogdet(inner)[1])
+        return cls(played, first, second, mode[:, :, 0], np.linalg.cholesky(covariance), likelihood)
 
-    def drawn(self, icons: tuple[str, ...], rng: np.random.Generator) -> tuple[Array, Array]:
-        """Scores (laboratories, icons, icons) of all pairs, and by how much less likely they are a priori (ln)."""
-        chance = rng.standard_normal(self.mode.shape)
+    def drawn(self, rng: np.random.Generator) -> tuple[Array, Confusions, Array]:
+        """Scores (laboratories, icons, icons) of all pairs, confusions with them, and how much likelier they are.
+
+        The last, for scores alone, is the ln of their probability by chance over that by the answers.
+        """
+        chance, (first, second), played = rng.standard_normal(self.mode.shape), (self.first, self.second), self.played
         own = self.mode + (self.root @ chance[:, :, None])[:, :, 0]
-        scores, (first, second) = pair_scores(icons, len(own), int(rng.integers(2**31))), self.pairs
-        scores[:, first, second] = scores[:, second, first] = own
+        scores = pair_scores(played.icons, len(own), int(rng.integers(2**31)))
+        scores[:, first, second] = scores[:, second, first] = own[:, : len(first)]
+        log_odds = played.spread[:, None, None] * scores
+        if own.shape[1] > len(first):
+            log_odds[:, first, second] += own[:, len(first) : 2 * len(first)]
+            log_odds[:, second, first] += own[:, 2 * len(first) :]
         wider = np.log(np.diagonal(self.root, axis1=1, axis2=2)).sum(axis=1)
-        return scores, np.asarray(0.5 * (np.square(chance) - np.square(own)).sum(axis=1) + wider)
-
-
-def _chosen(expected: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The pairs of the most answers (icons, icons)."""
-    all_pairs = np.array(list(combinations(range(len(expected)), 2)))
-    often = expected + expected.T
-    most = np.sort(np.argsort(-often[all_pairs[:, 0], all_pairs[:, 1]], kind="stable")[:MOST_PAIRS])
-    return all_pairs[most, 0], all_pairs[most, 1]
-
-
-def _relative(played: Confusions, pooled: Array, row: NDArray[np.int64], column: NDArray[np.int64]) -> Array:
-    """Covariance (cells, cells) of people's odds over those of all."""
-    cells, own = pooled[:, row, column], pooled[:, row, row]
-    people = played.probability
-    apart = people[:, :, row, column] - people[:, :, row, row] * (cells / own)[:, None]
-    flat = apart.reshape(-1, len(row))
-    size = np.sqrt(np.square(cells).mean(axis=0))
-    return np.asarray(flat.T @ flat / (len(people) * (people.shape[1] - 1)) / np.outer(size, size))
-
-
-def _shared(shown: Array) -> Array:
-    """Share (icons, icons) of people's effects left in the sum, by presentations (participants, icons)."""
-    total = np.maximum(shown.sum(axis=0), 1.0)
-    return np.asarray(shown.T @ shown / np.outer(total, total))
+        likelier = np.asarray(0.5 * (np.square(chance) - np.square(own)).sum(axis=1) + wider)
+        return scores, played.with_log_odds(log_odds), likelier
 
 
 def known_scores(names: tuple[str, ...], scores: Array, of: tuple[str, ...], laboratories: int, seed: int) -> Array:
@@ -128,3 +121,34 @@ def known_scores(names: tuple[str, ...], scores: Array, of: tuple[str, ...], lab
         here, there = ([places.index(name) for name in both] for places in (names, of))
         found[:, np.array(there)[:, None], there] = scores[:, np.array(here)[:, None], here]
     return found
+
+
+def _chosen(expected: Array) -> tuple[Places, Places]:
+    """The pairs of the most answers (icons, icons)."""
+    all_pairs = np.array(list(combinations(range(len(expected)), 2)))
+    often = expected + expected.T
+    most = np.sort(np.argsort(-often[all_pairs[:, 0], all_pairs[:, 1]], kind="stable")[:MOST_PAIRS])
+    return all_pairs[most, 0], all_pairs[most, 1]
+
+
+def _block(first: Array, second: Array) -> Array:
+    whole = np.zeros((len(first) + len(second),) * 2)
+    whole[: len(first), : len(first)] = first
+    whole[len(first) :, len(first) :] = second
+    return whole
+
+
+def _relative(played: Confusions, pooled: Array, row: Places, column: Places) -> Array:
+    """Covariance (cells, cells) of people's odds over those of all."""
+    cells, own = pooled[:, row, column], pooled[:, row, row]
+    people = played.probability
+    apart = people[:, :, row, column] - people[:, :, row, row] * (cells / own)[:, None]
+    flat = apart.reshape(-1, len(row))
+    size = np.sqrt(np.square(cells).mean(axis=0))
+    return np.asarray(flat.T @ flat / (len(people) * (people.shape[1] - 1)) / np.outer(size, size))
+
+
+def _shared(shown: Array) -> Array:
+    """Share (icons, icons) of people's effects left in the sum, by presentations (participants, icons)."""
+    total = np.maximum(shown.sum(axis=0), 1.0)
+    return np.asarray(shown.T @ shown / np.outer(total, total))

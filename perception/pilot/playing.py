@@ -83,7 +83,10 @@ class Confusions:
 
     def with_scores(self, scores: Array) -> Confusions:
         """The same with pairs of scores (laboratories, icons, icons) in units of each laboratory's spread."""
-        log_odds = self.spread[:, None, None] * scores
+        return self.with_log_odds(self.spread[:, None, None] * scores)
+
+    def with_log_odds(self, log_odds: Array) -> Confusions:
+        """The same with other odds of each answer (laboratories, icons, icons), for all people of a laboratory."""
         return replace(self, probability=with_pairs(self.probability, log_odds[:, None]))
 
 
