@@ -101,7 +101,8 @@ def _sampled(
         return Conditioned(before, simulated, size, *_refreshed(data, before, simulated, kept, rng, step))
     chosen = systematic(weights, kept, rng)
     after, scores = _other_people(before.of(chosen), rng), scores[chosen]
-    found: Any = data.with_scores(data.simulate(after, step), scores) if data.by_people else simulated.of(chosen)
+    answered: Any = data.simulate(after, step) if data.by_people else simulated.of(chosen)
+    found = data.with_scores(answered, scores)
     return Conditioned(before, simulated, size, after, found, scores, size, 0)
 
 

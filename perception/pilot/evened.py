@@ -42,7 +42,8 @@ def smoothed(some: Laboratories, played: Confusions) -> tuple[Confusions, Array]
 
 
 def _cells(played: Confusions) -> Array:
-    return played.probability.reshape(*played.reported.shape[:2], -1)
+    laboratories, people, icons = played.reported.shape
+    return played.probability.reshape(laboratories, people, icons**2)
 
 
 def _named(played: Confusions, mean: Array) -> Confusions:

@@ -88,7 +88,8 @@ class PairPosterior:
         known = np.swapaxes(reach, 1, 2) @ np.linalg.solve(inner, steep @ reach)
         covariance = held - 0.5 * (known + np.swapaxes(known, 1, 2)) + LEAST * np.eye(len(held))
         likelihood = np.asarray(logs - 0.5 * np.linalg.slogdet(inner)[1])
-        return cls(played, first, second, mode[:, :, 0], np.linalg.cholesky(covariance), likelihood)
+        root = np.asarray(np.linalg.cholesky(covariance))
+        return cls(played, first, second, mode[:, :, 0], root, likelihood)
 
     def drawn(self, rng: np.random.Generator) -> tuple[Array, Confusions, Array]:
         """Scores (laboratories, icons, icons) of all pairs, confusions with them, and how much likelier they are.
