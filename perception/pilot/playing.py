@@ -28,8 +28,9 @@ SAMPLES = 256
 """Presentations of an icon to a person with *episodes*: a cell of one person has a standard error of at most 0.03."""
 LEAST_PROBABILITY = 1e-4
 """No answer is less likely than this, whatever the lapses of a person: one odd answer must not rule out a draw."""
-MOST_CELLS = 60_000_000
-"""Cells of all confusions together, eight bytes each; of larger sets fewer laboratories are simulated."""
+MOST_CELLS = 30_000_000
+"""Cells of all confusions together, eight bytes each and several copies: of larger sets fewer laboratories are
+simulated."""
 MOST_ICONS = 64
 """More names than this nobody learns for an experiment."""
 

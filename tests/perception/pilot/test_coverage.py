@@ -30,6 +30,7 @@ from thermicon.perception.pilot.states import SEEDS, Laboratories, LaboratoryPri
 from thermicon.perception.pilot.trials import Trials
 
 ENDS = (0.025, 0.975)
+NAMED = "probability", "reported"
 PILOTS = int(os.environ.get("THERMICON_PILOTS", "40"))
 RIG = Rig.load("thenar")
 Floats = NDArray[np.float64]
@@ -130,10 +131,15 @@ class Truth:
         scores = np.triu(bench.rng.standard_normal((len(bench.own), 6, 6)), 1)
 
         def people() -> Confusions:
-            usual = played.confusions(bench.other_people(bench.true))
-            return replace(usual, spread=np.full(len(bench.own), spread)).with_scores(scores + scores.swapaxes(1, 2))
+            each = []
+            for _ in range(cls.groups):
+                usual = played.confusions(bench.other_people(bench.true))
+                usual = replace(usual, spread=np.full(len(bench.own), spread))
+                each.append(usual.with_scores(scores + scores.swapaxes(1, 2)))
+            named, reported = (np.concatenate([getattr(one, name) for one in each], axis=1) for name in NAMED)
+            return Confusions(played.icons, named, reported)
 
-        return cls(people(), np.mean([people().pooled for _ in range(cls.groups)], axis=0))
+        return cls(people(), people().pooled)
 
 
 @pytest.mark.slow
@@ -156,7 +162,8 @@ def test_pilots_cover_laboratories_of_either_memory_whether_or_not_their_pairs_a
 
     rows, upper = [], np.triu_indices(6, 1)
     for k in range(len(bench.own)):
-        who, shown = bench.rng.integers(24, size=participants), np.full((participants, 6), float(times))
+        who = bench.rng.integers(truth.asked.probability.shape[1], size=participants)
+        shown = np.full((participants, 6), float(times))
         counts = answers_of(truth.asked.of(np.array([k])), who, shown, bench.rng)
         trials = Trials(six.icons, tuple(f"P{number}" for number in range(participants)), counts)
         known = Known(six.icons, six.played, six.prior, six.skins)
