@@ -115,12 +115,14 @@ def known_scores(names: tuple[str, ...], scores: Array, of: tuple[str, ...], lab
     >>> own = known_scores(("a", "b"), np.array([[[0.0, 3.0], [3.0, 0.0]]]), ("b", "c", "a"), 1, 0)
     >>> float(own[0, 0, 2]), bool(own[0, 0, 1] == own[0, 1, 0] != 0.0)
     (3.0, True)
+    >>> bool((known_scores(("a", "b"), np.ones((1, 2, 2)), ("c", "d"), 1, 0) == pair_scores(("c", "d"), 1, 0)).all())
+    True
     """
     found = pair_scores(of, laboratories, seed)
     if scores.size:
         both = [name for name in names if name in of]
-        here, there = ([places.index(name) for name in both] for places in (names, of))
-        found[:, np.array(there)[:, None], there] = scores[:, np.array(here)[:, None], here]
+        here, there = (np.array([places.index(name) for name in both], dtype=np.int64) for places in (names, of))
+        found[:, there[:, None], there] = scores[:, here[:, None], here]
     return found
 
 
