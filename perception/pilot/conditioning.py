@@ -43,6 +43,8 @@ data keep the polynomial from bending there, and count for little else."""
 FARTHEST = 25.0
 """Nine in ten laboratories are less likely by at most so many times that ln L of answers, which else grows: it is
 squared, and with thousands of answers those far away would not count at all."""
+PAIR_DRAWS = 4
+"""Draws of the pairs of each laboratory that answers weigh: with one, chance decides which laboratories count."""
 Step = Callable[[], None]
 Data: TypeAlias = "Namings | MeasuredValues"
 
@@ -95,12 +97,12 @@ def _sampled(
 ) -> Conditioned:
     """Laboratories after the data; a LinAlgError or a FloatingPointError where their likelihood cannot be computed."""
     logs, scores = data.weighed(simulated, rng)
-    weights = normalised_weights(logs)
-    size = effective(weights)
+    each = normalised_weights(logs)
+    size = effective(each.sum(axis=1))
     if size < min(LEAST_EFFECTIVE, LEAST_SHARE * len(before)):
         return Conditioned(before, simulated, size, *_refreshed(data, before, simulated, kept, rng, step))
-    chosen = systematic(weights, kept, rng)
-    after, scores = _other_people(before.of(chosen), rng), scores[chosen]
+    chosen, which = np.divmod(systematic(each.ravel(), kept, rng), each.shape[1])
+    after, scores = _other_people(before.of(chosen), rng), scores[chosen, which]
     answered: Any = data.simulate(after, step) if data.by_people else simulated.of(chosen)
     found = data.with_scores(answered, scores)
     return Conditioned(before, simulated, size, after, found, scores, size, 0)
@@ -194,13 +196,16 @@ class Namings:
         return simulated.with_scores(scores)
 
     def weighed(self, simulated: Confusions, rng: np.random.Generator) -> tuple[Array, Array]:
-        """Ln weights (laboratories,) with pairs that the answers make likely, and these (laboratories, icons, icons).
+        """Ln weights (laboratories, draws) with pairs that the answers make likely, and their scores.
 
-        Each participant is integrated over people.
+        These are (laboratories, draws, icons, icons). Each participant is integrated over people.
         """
-        scores, answered, likelier = PairPosterior.of(simulated, None, self.trials.counts).drawn(rng)
-        each = log_likelihoods(answered.probability, self.trials.counts)
-        return np.asarray(each.sum(axis=1) + likelier), scores
+        found, logs, scores = PairPosterior.of(simulated, None, self.trials.counts), [], []
+        for _ in range(PAIR_DRAWS):
+            drawn, answered, likelier = found.drawn(rng)
+            logs.append(log_likelihoods(answered.probability, self.trials.counts).sum(axis=1) + likelier)
+            scores.append(drawn)
+        return np.stack(logs, axis=1), np.stack(scores, axis=1)
 
     def likelihood(
         self, some: Laboratories, simulated: Confusions, rng: np.random.Generator
@@ -287,14 +292,15 @@ class MeasuredValues:
         return simulated
 
     def weighed(self, simulated: SimulatedMeasurements, rng: np.random.Generator) -> tuple[Array, Array]:
-        """Ln likelihood (laboratories,) of all values, and scores of no icons."""
-        return log_likelihood(self.measurements, simulated), np.zeros((len(simulated.mean), 0, 0))
+        """Ln likelihood (laboratories, 1) of all values, and scores of no icons."""
+        return log_likelihood(self.measurements, simulated)[:, None], np.zeros((len(simulated.mean), 1, 0, 0))
 
     def likelihood(
         self, some: Laboratories, simulated: SimulatedMeasurements, rng: np.random.Generator
     ) -> tuple[Array, Array, SimulatedMeasurements]:
-        """The same, and the values as they are."""
-        return *self.weighed(simulated, rng), simulated
+        """Ln likelihood (laboratories,), and the values as they are."""
+        logs, scores = self.weighed(simulated, rng)
+        return logs[:, 0], scores[:, 0], simulated
 
     def polynomial(
         self, some: Laboratories, simulated: SimulatedMeasurements, logs: Array, rng: np.random.Generator

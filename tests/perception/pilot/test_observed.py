@@ -182,7 +182,7 @@ def test_answers_without_a_likelihood_stand_alone(
     icons: IconSet, rig: Rig, answers: Trials, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(
-        Namings, "weighed", lambda _, simulated, rng: (np.full(len(simulated.probability), np.nan), 0.0)
+        Namings, "weighed", lambda _, simulated, rng: (np.full((len(simulated.probability), 1), np.nan), 0.0)
     )
     found = observed(answers, icons, rig, others=[icons], draws=20, seed=1)
     low, high = found.data.pooled.named_interval or (0.0, 0.0)
