@@ -111,19 +111,23 @@ def draws_sentences(found: Observed[Any, Any]) -> list[str]:
     """The number of draws that carry the result, and the constants that moved."""
     from thermicon.perception.pilot.conditioning import Namings
 
-    own, people, answered = found.conditioned, found.predictions[0].before.people, isinstance(found.data, Namings)
+    own, answered = found.conditioned, isinstance(found.data, Namings)
     if found.unusable:
-        return [f"Before is for {people} people who did not take part, with 95 % of laboratories.", found.unusable]
+        return ["Before is for people who did not take part, with 95 % of laboratories.", found.unusable]
     carried = f"effective sample size {own.effective:.0f} of {len(own.before)} draws"
     if own.rounds:
         rounds = "1 round" if own.rounds == 1 else f"{own.rounds} rounds"
         how = " by their pooled answers" if answered else f", of which {own.effective_after:.0f} are effective"
         carried += f", too few to be weighted: {len(own.after)} fresh laboratories were sampled in {rounds}{how}"
     lines = [
-        f"Before and after are for {people} people of this laboratory who did not take part, with 95 % of "
+        "Before and after are means over many people of this laboratory who did not take part, with 95 % of "
         "laboratories. Bits count names.",
         f"The {'answers' if answered else 'values'} weigh the draws: {carried}.",
     ]
+    if answered and len(found.forms) > 1:
+        after = " and ".join(f"{percent(then or 0.0)} {form}" for form, (_, then) in found.forms.items())
+        before = " and ".join(percent(first) for first, _ in found.forms.values())
+        lines.append(f"Form of memory: {after} of the laboratories after the answers; {before} before.")
     if not answered and own.effective_after < LEAST_CARRIED:
         lines.append("So few carry rough intervals only: use more --draws.")
     if (count := len(own.after)) < LEAST_LABORATORIES:

@@ -1,14 +1,16 @@
 """Laboratories conditioned on data.
 
-1. What was answered or measured is simulated in every draw of the prior; its likelihood weighs the draw.
+1. What was answered or measured is simulated in every draw of the prior; its likelihood weighs the draw. Pairs are
+   drawn from what the answers make likely in each, and their weight says how likely they were before.
 2. With at least `LEAST_EFFECTIVE` draws behind the data, laboratories are resampled by these weights.
 3. Otherwise fresh laboratories are sampled from the prior times a likelihood that is a polynomial of the coordinates,
-   fitted to those simulated so far, and simulated. Those of measurements are weighed by what the polynomial missed.
+   one for each form of memory, fitted to those simulated so far. They are simulated, and weighed by what the polynomial
+   missed: answers by the likelihood of all together, which depends least on who the simulated people are.
 4. Where a likelihood cannot be computed, nothing is sampled, and the data stand alone.
 """
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -19,9 +21,12 @@ from thermicon.base.numbers.cores import quiet_blas
 from thermicon.base.words.number_text import percent, percent_span
 
 from ..experiments.measure import Setting
-from .likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights, walk
+from ..identification.pairs import pair_scores
+from .evened import evened, smoothed
+from .likelihood import PooledLikelihood, Target, effective, log_likelihoods, normalised_weights, systematic, walk
 from .measurement_likelihood import Emulator, SimulatedMeasurements, log_likelihood, predicted
 from .measurements_file import Measurements
+from .pair_posterior import PairPosterior
 from .playing import Confusions, Stage
 from .prediction import Fit, MeasurementFit, compare, compare_measurements
 from .states import SEEDS, Laboratories, LaboratoryPrior
@@ -38,6 +43,8 @@ data keep the polynomial from bending there, and count for little else."""
 FARTHEST = 25.0
 """Nine in ten laboratories are less likely by at most so many times that ln L of answers, which else grows: it is
 squared, and with thousands of answers those far away would not count at all."""
+PAIR_DRAWS = 4
+"""Draws of the pairs of each laboratory that answers weigh: with one, chance decides which laboratories count."""
 Step = Callable[[], None]
 Data: TypeAlias = "Namings | MeasuredValues"
 
@@ -47,8 +54,10 @@ class Conditioned:
     """The weighed laboratories `before` data, and `after`, a sample of equal weights.
 
     `effective` is the effective sample size of the weights, `effective_after` how many independent draws stand behind
-    `after`, `rounds` how often fresh laboratories were simulated (0: the weights sufficed). `unusable` says why there
-    is no likelihood, and then `after` is empty; otherwise it is empty itself.
+    `after`, `rounds` how often fresh laboratories were simulated (0: the weights sufficed). `scores` (kept, icons,
+    icons) are those of the pairs after answers; of measurements, which say nothing of pairs, there are no icons.
+    `simulated` has pairs by chance, `simulated_after` these. `unusable` says why there is no likelihood, and then
+    `after` is empty; otherwise it is empty itself.
     """
 
     before: Laboratories
@@ -56,6 +65,7 @@ class Conditioned:
     effective: float
     after: Laboratories
     simulated_after: Any
+    scores: Array
     effective_after: float
     rounds: int
     unusable: str = ""
@@ -69,69 +79,66 @@ def condition(
     rng = np.random.default_rng(np.random.SeedSequence([seed, data.stream]))
     kept = max(2, len(before) // 2) if kept is None else kept
     simulated: Any = data.simulate(before, step)
+    shown = data.by_chance(simulated, seed)
     try:
-        return _sampled(data, before, simulated, kept, rng, step)
+        found = _sampled(data, before, simulated, kept, rng, step)
+        return replace(found, simulated=shown)
     except np.linalg.LinAlgError:
         why = "the covariance matrix of the data cannot be factorised"
     except FloatingPointError:
         why = "it is not a finite number"
     nobody = np.zeros(0, dtype=np.int64)
-    return Conditioned(before, simulated, 0.0, before.of(nobody), simulated.of(nobody), 0.0, 0, why)
+    none = np.zeros((0, 0, 0))
+    return Conditioned(before, shown, 0.0, before.of(nobody), shown.of(nobody), none, 0.0, 0, why)
 
 
 def _sampled(
     data: Data, before: Laboratories, simulated: Any, kept: int, rng: np.random.Generator, step: Step | None
 ) -> Conditioned:
     """Laboratories after the data; a LinAlgError or a FloatingPointError where their likelihood cannot be computed."""
-    logs = data.log_likelihood(simulated)
-    weights = normalised_weights(logs)
-    size = effective(weights)
-    if size >= min(LEAST_EFFECTIVE, LEAST_SHARE * len(before)):
-        after, found = _resampled(data, before.place, simulated, weights, kept, rng, step)
-        return Conditioned(before, simulated, size, after, found, size, 0)
-    after, found, left, rounds = _refreshed(data, before.place, simulated, logs, kept, rng, step)
-    return Conditioned(before, simulated, size, after, found, left, rounds)
+    logs, scores = data.weighed(simulated, rng)
+    each = normalised_weights(logs)
+    size = effective(each.sum(axis=1))
+    if size < min(LEAST_EFFECTIVE, LEAST_SHARE * len(before)):
+        return Conditioned(before, simulated, size, *_refreshed(data, before, simulated, kept, rng, step))
+    chosen, which = np.divmod(systematic(each.ravel(), kept, rng), each.shape[1])
+    after, scores = _other_people(before.of(chosen), rng), scores[chosen, which]
+    answered: Any = data.simulate(after, step) if data.by_people else simulated.of(chosen)
+    found = data.with_scores(answered, scores)
+    return Conditioned(before, simulated, size, after, found, scores, size, 0)
 
 
 def _refreshed(
-    data: Data, place: Array, simulated: Any, logs: Array, kept: int, rng: np.random.Generator, step: Step | None
-) -> tuple[Laboratories, Any, float, int]:
-    """Fresh laboratories, what is simulated there, how many are effective, and the rounds that it took."""
-    start, short = place, np.zeros(len(place)) if data.by_people else logs.max() - logs
+    data: Data, some: Laboratories, simulated: Any, kept: int, rng: np.random.Generator, step: Step | None
+) -> tuple[Laboratories, Any, Array, float, int]:
+    """Fresh laboratories, what is simulated there, scores, how many are effective, and the rounds that it took."""
+    before, (logs, *_) = some, data.likelihood(some, simulated, rng)
     for rounds in range(1, data.rounds + 1):
-        target = data.polynomial(place, simulated, short)
-        moved = walk(start[rng.integers(len(start), size=kept)], target, rng)
-        people = rng.integers(SEEDS, size=kept) if data.by_people else np.zeros(kept, np.int64)
-        fresh = Laboratories(moved, people)
+        target = data.polynomial(some, simulated, logs, rng)
+        start = before.of(rng.integers(len(before), size=kept))
+        start = start.of(np.argsort(start.form, kind="stable"))
+        fresh = _other_people(Laboratories(*_walked(start, target, rng)), rng)
         found: Any = data.simulate(fresh, step)
-        if not data.by_people:
-            own = data.log_likelihood(found)
-            missed = own - target(moved)
-            if effective(normalised_weights(missed)) >= LEAST_SHARE * kept:
-                break
-        if rounds == data.rounds:
+        own, scores, answered = data.likelihood(fresh, found, rng)
+        missed = own - target(fresh.place, fresh.form)
+        if rounds == data.rounds or effective(normalised_weights(missed)) >= LEAST_SHARE * kept:
             break
-        place, simulated, start = np.vstack([place, moved]), simulated.joined(found), moved
-        if data.by_people:
-            likely = target(place)
-            short = np.maximum(np.median(likely[-kept:]) - likely, 0.0)
-        else:
-            logs = np.concatenate([logs, own])
-            short = logs.max() - logs
-    if data.by_people:
-        return fresh, found, float(kept), rounds
+        some, simulated, logs = some.joined(fresh), simulated.joined(found), np.concatenate([logs, own])
     share = _tempered(missed, LEAST_SHARE * kept)
-    after, found = _resampled(data, moved, found, share, kept, rng, step)
-    return after, found, effective(share), rounds
+    chosen = systematic(share, kept, rng)
+    return fresh.of(chosen), answered.of(chosen), scores[chosen], effective(share), rounds
 
 
-def _resampled(
-    data: Data, place: Array, simulated: Any, weights: Array, kept: int, rng: np.random.Generator, step: Step | None
-) -> tuple[Laboratories, Any]:
-    """A sample of equal weights, with people who did not take part, and what is simulated there."""
-    chosen = systematic(weights, kept, rng)
-    after = Laboratories(place[chosen], rng.integers(SEEDS, size=kept))
-    return after, data.simulate(after, step) if data.by_people else simulated.of(chosen)
+def _walked(
+    start: Laboratories, target: Target, rng: np.random.Generator
+) -> tuple[Array, NDArray[np.int64], NDArray[np.int64]]:
+    place, form = walk(start.place, start.form, target, rng)
+    return place, start.seed, form
+
+
+def _other_people(some: Laboratories, rng: np.random.Generator) -> Laboratories:
+    """The same laboratories with people who did not take part."""
+    return replace(some, seed=rng.integers(SEEDS, size=len(some)))
 
 
 def _tempered(logs: Array, least: float) -> Array:
@@ -141,13 +148,6 @@ def _tempered(logs: Array, least: float) -> Array:
         if effective(weights) >= least:
             break
     return weights
-
-
-def systematic(weights: Array, n: int, rng: np.random.Generator) -> NDArray[np.int64]:
-    """Numbers of n resampled items, by one random start: each as often as its weight says, up to rounding."""
-    ends = np.cumsum(weights)
-    found: NDArray[np.int64] = np.searchsorted(ends / ends[-1], (np.arange(n) + rng.random()) / n, side="right")
-    return np.minimum(found, len(weights) - 1)
 
 
 @dataclass(frozen=True)
@@ -184,18 +184,44 @@ class Namings:
         return f"{percent(named)} named, 95 % interval {percent_span(*ends)}"
 
     def simulate(self, some: Laboratories, step: Step | None = None) -> Confusions:
-        """Confusions of the people of each laboratory."""
-        return self.stage.confusions(some, step)
+        """Confusions of the people of each laboratory by its constants, with means as of many people."""
+        return evened(some, self.stage.confusions(some, step))
 
-    def log_likelihood(self, simulated: Confusions) -> Array:
-        """Ln likelihood (laboratories,) of all answers, each participant integrated over people."""
-        return np.asarray(log_likelihoods(simulated.probability, self.trials.counts).sum(axis=1))
+    def by_chance(self, simulated: Confusions, seed: int) -> Confusions:
+        """Confusions with pairs as they may be before any answer."""
+        return simulated.with_scores(pair_scores(simulated.icons, len(simulated.probability), seed))
 
-    def polynomial(self, place: Array, simulated: Confusions, short: Array) -> Callable[[Array], Array]:
+    def with_scores(self, simulated: Confusions, scores: Array) -> Confusions:
+        """Confusions with these pairs."""
+        return simulated.with_scores(scores)
+
+    def weighed(self, simulated: Confusions, rng: np.random.Generator) -> tuple[Array, Array]:
+        """Ln weights (laboratories, draws) with pairs that the answers make likely, and their scores.
+
+        These are (laboratories, draws, icons, icons). Each participant is integrated over people.
+        """
+        found, logs, scores = PairPosterior.of(simulated, None, self.trials.counts), [], []
+        for _ in range(PAIR_DRAWS):
+            drawn, answered, likelier = found.drawn(rng)
+            logs.append(log_likelihoods(answered.probability, self.trials.counts).sum(axis=1) + likelier)
+            scores.append(drawn)
+        return np.stack(logs, axis=1), np.stack(scores, axis=1)
+
+    def likelihood(
+        self, some: Laboratories, simulated: Confusions, rng: np.random.Generator
+    ) -> tuple[Array, Array, Confusions]:
+        """Ln likelihood (laboratories,) of all answers together, scores that they make likely, confusions with them."""
+        found = PairPosterior.of(*smoothed(some, simulated), self.trials.counts)
+        return found.log_likelihood, *found.drawn(rng)[:2]
+
+    def polynomial(self, some: Laboratories, simulated: Confusions, logs: Array, rng: np.random.Generator) -> Target:
         """Ln likelihood of the pooled answers."""
+        best = np.array([logs[some.form == form].max() for form in some.form.tolist()])
+        short = best - logs
         near = max(NEAR_ANSWERS, float(np.quantile(short, 0.9)) / FARTHEST)
         weight = 1.0 / (1.0 + np.square(short / near))
-        return PooledLikelihood.fit(place, simulated, self.trials.counts, weight)
+        scores = pair_scores(simulated.icons, len(some), int(rng.integers(SEEDS)))
+        return PooledLikelihood.fit(some, simulated, self.trials.counts, scores, weight)
 
     def compare(self, simulated: Confusions, seed: int) -> Fit:
         """The answers beside those of the same experiment in these laboratories."""
@@ -257,13 +283,32 @@ class MeasuredValues:
         """Means, covariances and scatter of the values in each laboratory."""
         return predicted(self.prior, some, self.setting, self.measurements.conditions, step)
 
-    def log_likelihood(self, simulated: SimulatedMeasurements) -> Array:
-        """Ln likelihood (laboratories,) of all values."""
-        return log_likelihood(self.measurements, simulated)
+    def by_chance(self, simulated: SimulatedMeasurements, seed: int) -> SimulatedMeasurements:
+        """The values, in which pairs have no part."""
+        return simulated
 
-    def polynomial(self, place: Array, simulated: SimulatedMeasurements, short: Array) -> Callable[[Array], Array]:
-        """Ln likelihood with polynomials for means, covariances and scatter."""
-        return Emulator.fit(self.measurements, place, simulated, 1.0 / (1.0 + short / NEAR_VALUES))
+    def with_scores(self, simulated: SimulatedMeasurements, scores: Array) -> SimulatedMeasurements:
+        """The same."""
+        return simulated
+
+    def weighed(self, simulated: SimulatedMeasurements, rng: np.random.Generator) -> tuple[Array, Array]:
+        """Ln likelihood (laboratories, 1) of all values, and scores of no icons."""
+        return log_likelihood(self.measurements, simulated)[:, None], np.zeros((len(simulated.mean), 1, 0, 0))
+
+    def likelihood(
+        self, some: Laboratories, simulated: SimulatedMeasurements, rng: np.random.Generator
+    ) -> tuple[Array, Array, SimulatedMeasurements]:
+        """Ln likelihood (laboratories,), and the values as they are."""
+        logs, scores = self.weighed(simulated, rng)
+        return logs[:, 0], scores[:, 0], simulated
+
+    def polynomial(
+        self, some: Laboratories, simulated: SimulatedMeasurements, logs: Array, rng: np.random.Generator
+    ) -> Target:
+        """Ln likelihood with polynomials for means, covariances and scatter, the same for both forms of memory."""
+        weight = 1.0 / (1.0 + (logs.max() - logs) / NEAR_VALUES)
+        emulator = Emulator.fit(self.measurements, some.place, simulated, weight)
+        return lambda place, _: emulator(place)
 
     def compare(self, simulated: SimulatedMeasurements, seed: int) -> MeasurementFit:
         """Group means beside those of the same measurements in these laboratories."""

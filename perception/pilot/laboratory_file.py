@@ -1,8 +1,9 @@
 """The files of a conditioned laboratory.
 
-`LAB.csv` has the form of `posterior.csv`, with further columns for memory; the offset of the laboratory is part of its
-thresholds. `LAB.toml` is its first draw, which is a laboratory of the sample: the medians belong to none, and may
-predict something else. A score scatters by some 2 points with who the people are: the nearest few are asked again.
+`LAB.csv` has the form of `posterior.csv`, with further columns for memory, its form and the spread of pairs among them;
+the offset of the laboratory is part of its thresholds. It does not know which pairs the laboratory confuses. `LAB.toml`
+is its first draw, which is a laboratory of the sample: the medians belong to none, and may predict something else. A
+score scatters by some 2 points with who the people are: the nearest few are asked again.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,6 +14,7 @@ import numpy as np
 from thermicon.base.files.records import Record, RecordTable, dump_records
 from thermicon.base.numbers.arrays import Array
 
+from ..observer.channels import FORM
 from ..observer.constants import BETWEEN_LABORATORIES, name_of, names_of
 from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import as_written, to_text
@@ -42,8 +44,9 @@ def laboratory_draws(
     for drive, offset in zip(names_of(Observer, "threshold_drive"), OFFSETS, strict=True):
         own[:, names.index(drive)] *= np.exp(-values[:, prior.names.index(offset)])
     own[:, names.index(BETWEEN_LABORATORIES)] = NO_SPREAD
-    remembered = tuple(parameter.name for parameter in prior.memory)
-    memory = values[:, [prior.names.index(name) for name in remembered]]
+    parameters = tuple(parameter.name for parameter in prior.memory)
+    memory = np.hstack([values[:, [prior.names.index(name) for name in parameters]], some.form[:, None]])
+    remembered = (*parameters, FORM)
     header = prior.draws.header
     # Offsets of the laboratories of the evidence say nothing of this one.
     counted = np.hstack([own[:, [k for k, name in enumerate(names) if name not in header.offsets]], memory])
@@ -96,7 +99,8 @@ def middle_of(some: Laboratories, constants: Array, predicted: Array, played: St
 
     The first column of `predicted` is the share felt and named; for it the nearest are asked the set once more.
     """
-    _, first, group, times = np.unique(some.place, axis=0, return_index=True, return_inverse=True, return_counts=True)
+    each = np.column_stack([some.place, some.form])
+    _, first, group, times = np.unique(each, axis=0, return_index=True, return_inverse=True, return_counts=True)
     # Resampled more than once, a laboratory has been asked with several groups of people.
     means = np.zeros((len(first), predicted.shape[1]))
     np.add.at(means, group.reshape(-1), predicted / times[group.reshape(-1), None])
@@ -108,7 +112,7 @@ def middle_of(some: Laboratories, constants: Array, predicted: Array, played: St
     rng = np.random.default_rng(np.random.SeedSequence([0, 41]))
     asked = np.repeat(chosen, AGAIN)
     # Each has people of its own: one group for all would shift the score of whichever is chosen.
-    again = Laboratories(some.place[asked], rng.integers(SEEDS, size=len(asked)))
+    again = replace(some.of(asked), seed=rng.integers(SEEDS, size=len(asked)))
     scores = played.confusions(again).felt_and_named.reshape(len(chosen), AGAIN).sum(axis=1)
     scores = (scores + means[near, 0] * times[near]) / (AGAIN + times[near])
     return int(chosen[np.abs(scores - predicted[:, 0].mean()).argmin()])

@@ -130,7 +130,7 @@ class Emulator:
     def fit(cls, measured: Measurements, place: Array, each: SimulatedMeasurements, weight: Array) -> Emulator:
         """Fit to simulated laboratories, each of which counts by its `weight` (n,)."""
         targets, own = _flat(each), weight / weight.mean()
-        features, pairs, _ = smooth_features(place, targets / targets.std(axis=0).clip(1e-9), own)
+        features, pairs = smooth_features(place, targets / targets.std(axis=0).clip(1e-9), own)
         return cls(measured, groups_of(measured, alike=True), ridge(features, targets, own)[0], pairs)
 
     def __call__(self, place: Array) -> Array:

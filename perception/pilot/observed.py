@@ -18,13 +18,16 @@ from thermicon.icons import IconSet
 from thermicon.icons.files.shipped import Icons, set_of
 
 from ..experiments.measure import Setting
+from ..identification.pairs import pair_scores
 from ..kernels.parallel import Progress, step_counter
-from ..observer.channels import forms_in
+from ..observer.channels import MEMORY_FORMS, MemoryForm, forms_in
 from ..observer.draws import PosteriorDraws
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from .conditioning import Conditioned, MeasuredValues, Namings, condition
+from .evened import evened
 from .laboratory_file import laboratory_draws, laboratory_texts
 from .measurements_file import Measurements
+from .pair_posterior import known_scores
 from .playing import Confusions, Stage, laboratories_for, stage
 from .prediction import ChangedConstant, ChangedPrediction, Fit, MeasurementFit, SetPrediction, changed
 from .states import LaboratoryPrior
@@ -81,6 +84,18 @@ class Observed(Drawn, Tabled, Generic[D, F]):
         )
 
     @property
+    def forms(self) -> dict[MemoryForm, tuple[float, float | None]]:
+        """Share of the laboratories with each form of memory that counts, before and after (None: not sharpened)."""
+        found: dict[MemoryForm, tuple[float, float | None]] = {}
+        for form in forms_in(self.prior.choice):
+            shares = (
+                (some.form == MEMORY_FORMS.index(form)) for some in (self.conditioned.before, self.conditioned.after)
+            )
+            first, then = (float(share.mean()) if share.size else None for share in shares)
+            found[form] = (first or 0.0, then)
+        return found
+
+    @property
     def provenance(self) -> tuple[str, ...]:
         """The origin of the conditioned draws, one line each."""
         found = self.conditioned
@@ -102,7 +117,12 @@ class Observed(Drawn, Tabled, Generic[D, F]):
         """
         if self.unusable:
             raise ValueError(f"there are no draws of this laboratory. {self.unusable}")
-        after, details = self.confusions_after, self.data.details(self.conditioned.simulated_after)
+        # Draws of a laboratory do not know its pairs, which is why they are taken out.
+        found, icons = self.conditioned, self.played.icons
+        after = self.confusions_after.with_scores(
+            -known_scores(icons, found.scores, icons, len(found.after), self.seed)
+        )
+        details = self.data.details(self.data.with_scores(found.simulated_after, -found.scores))
         predicted = np.column_stack([after.felt_and_named, after.correct, after.bits, details])
         return laboratory_draws(self.prior, self.conditioned, predicted, self.played, self.provenance, self._where)
 
@@ -126,6 +146,7 @@ class Observed(Drawn, Tabled, Generic[D, F]):
             "draws": len(found.before),
             "effective_sample_size": found.effective,
             "rounds": found.rounds,
+            "forms_of_memory": {form: {"before": first, "after": then} for form, (first, then) in self.forms.items()},
             "predictions": [
                 {"title": each.before.title, **asdict(each), "narrower": each.narrower} for each in self.predictions
             ],
@@ -229,7 +250,7 @@ def observed(
         raise ValueError(f"the answers are to other icons than those of the set ({', '.join(names[:6])})")
     if draws < LEAST_DRAWS:
         raise ValueError(f"an interval needs at least {LEAST_DRAWS} draws, not {draws}")
-    prior, further = LaboratoryPrior.of(crowd.observer, forms_in(crowd.memory)[0]), [set_of(each) for each in others]
+    prior, further = LaboratoryPrior.of(crowd.observer, crowd.memory), [set_of(each) for each in others]
     number = laboratories_for(max(len(names), *(len(list(other)) for other in further), 2), draws)
     before, kept = prior.first(number, seed), max(number // 2, 2)
     step = step_counter(progress, (1 + len(others)) * (number + kept))
@@ -238,7 +259,9 @@ def observed(
     found: Conditioned = condition(data, before, seed=seed, kept=kept, step=step)
 
     def both(played: Stage) -> tuple[Confusions, Confusions]:
-        return played.confusions(before, step), played.confusions(found.after, step)
+        first, then = (evened(some, played.confusions(some, step)) for some in (before, found.after))
+        pairs = pair_scores(played.icons, number, seed), known_scores(names, found.scores, played.icons, kept, seed)
+        return first.with_scores(pairs[0]), then.with_scores(pairs[1][: len(found.after)])
 
     pairs = [(found.simulated, found.simulated_after) if isinstance(trials, Trials) else both(main)]
     pairs += [both(stage(other, rig, prior, seed=seed, tracking=crowd.tracking)) for other in further]

@@ -21,8 +21,8 @@ from thermicon.base.results.drawn import Tabled
 from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.icons.files.shipped import Icons, set_of
 
+from ..identification.pairs import pair_scores
 from ..kernels.parallel import Progress, step_counter
-from ..observer.channels import forms_in
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from .observed import LEAST_DRAWS
 from .playing import Confusions, laboratories_for, stage
@@ -194,12 +194,12 @@ def plan(
     crowd = crowd.but(**words)
     sets, seed = [set_of(each) for each in (icons, other) if each is not None], crowd.seed
     rig = Rig.of(rig, sets[0].context.site)
-    prior = LaboratoryPrior.of(crowd.observer, forms_in(crowd.memory)[0])
+    prior = LaboratoryPrior.of(crowd.observer, crowd.memory)
     number = laboratories_for(max(2, *(len(list(each)) for each in sets)), draws)
     laboratories = prior.first(number, seed)
     step = step_counter(progress, number * len(sets) + len(participants) * len(trials))
     stages = [stage(each, rig, prior, seed=seed, tracking=crowd.tracking) for each in sets]
-    played = [each.confusions(laboratories, step) for each in stages]
+    played = [each.confusions(laboratories, step).with_scores(pair_scores(each.icons, number, seed)) for each in stages]
     apart = None if other is None else played[0].correct - played[1].correct
     pooled: Array = played[0].pooled.mean(axis=0)
     confused = np.triu(pooled + pooled.T, k=1)

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from thermicon.base.files.records import RecordTable
 from thermicon.base.numbers.arrays import Array
 
-from ..identification.laboratory_draws import Uncertain, latin, memory_parameters
-from ..observer.channels import CHANNELS, MemoryForm
+from ..identification.laboratory_draws import Uncertain, laboratory_forms, latin, memory_parameters
+from ..observer.channels import CHANNELS, MEMORY_FORMS, MemoryChoice
 from ..observer.constants import BETWEEN_LABORATORIES
 from ..observer.draws import PosteriorDraws
 from ..observer.observer import Observer
@@ -36,29 +36,38 @@ SEEDS = 2**31
 
 @dataclass(frozen=True, slots=True)
 class Laboratories:
-    """Some laboratories: `seed` (n,) of their people, and `place` (n, coordinates): constants, memory, offsets."""
+    """Some laboratories: `place` (n, coordinates), which are constants, memory, offsets; `seed` (n,) of their people.
+
+    `form` (n,) is the place of their form of memory in `MEMORY_FORMS`.
+    """
 
     place: Array
     seed: NDArray[np.int64]
+    form: NDArray[np.int64]
 
     def __len__(self) -> int:
         return len(self.place)
 
     def of(self, which: NDArray[np.int64]) -> Laboratories:
         """Some of them, by number."""
-        return Laboratories(self.place[which], self.seed[which])
+        return Laboratories(self.place[which], self.seed[which], self.form[which])
+
+    def joined(self, other: Laboratories) -> Laboratories:
+        """These and further ones."""
+        seed, form = np.concatenate([self.seed, other.seed]), np.concatenate([self.form, other.form])
+        return Laboratories(np.vstack([self.place, other.place]), seed, form)
 
 
 class LaboratoryPrior:
-    """The prior of laboratories: draws of the posterior, intervals of memory, and the spread of offsets.
+    """The prior of laboratories: draws of the posterior, intervals and forms of memory, and the spread of offsets.
 
     Memory that the draws have themselves is kept with their constants, on the scale of its shipped interval.
     """
 
-    def __init__(self, draws: PosteriorDraws, form: MemoryForm, records: RecordTable | None = None) -> None:
-        self.draws, self.form = draws, form
-        own = [each for each in memory_parameters(form) if each.name in draws.memory_names]
-        free = [each for each in memory_parameters(form, records=records) if each.name not in draws.memory_names]
+    def __init__(self, draws: PosteriorDraws, choice: MemoryChoice, records: RecordTable | None = None) -> None:
+        self.draws, self.choice = draws, choice
+        own = [each for each in memory_parameters(choice) if each.name in draws.memory_names]
+        free = [each for each in memory_parameters(choice, records=records) if each.name not in draws.memory_names]
         self.memory = (*own, *free)
         known = {prior.name: prior for prior in priors_of(draws.variable).each}
         self._scales: tuple[Prior, ...] = tuple(known[name] for name in draws.names)
@@ -76,14 +85,14 @@ class LaboratoryPrior:
         self._whitened = off @ ((vectors * turned) @ vectors.T)
 
     @classmethod
-    def of(cls, observer: ObserverModel | Path | str | None, form: MemoryForm) -> LaboratoryPrior:
+    def of(cls, observer: ObserverModel | Path | str | None, choice: MemoryChoice) -> LaboratoryPrior:
         """From a model, a file of draws, or the shipped draws; a ValueError for an observer without draws."""
         model = ObserverModel.of(observer)
         if model.posterior is None:
             raise ValueError(
                 f"{model.name} has no posterior draws, from which laboratories are made: give a table of draws (.csv)"
             )
-        return cls(model.posterior, form, model.records)
+        return cls(model.posterior, choice, model.records)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -97,13 +106,19 @@ class LaboratoryPrior:
         return tuple("" if unit == "1" else unit for unit in units)
 
     def first(self, n: int, seed: int) -> Laboratories:
-        """The draws themselves, evenly spaced (over and over where n is larger), each with a laboratory around it."""
+        """The draws themselves, evenly spaced (over and over where n is larger), each with a laboratory around it.
+
+        Draws that have a form of memory keep it, where both forms count.
+        """
         total = len(self.draws)
         chosen = [k % total for k in range(n)] if n > total else self.draws.spaced(n)
         rng = np.random.default_rng(np.random.SeedSequence([seed, 11]))
         normal = normal_scores(latin(self._free, n, seed), OUTERMOST)
         offsets = rng.standard_normal((n, len(CHANNELS)))
-        return Laboratories(np.hstack([self._whitened[chosen], normal, offsets]), rng.integers(SEEDS, size=n))
+        forms, held = laboratory_forms(n, self.choice, seed), self.draws.forms
+        if self.choice == "both" and held is not None:
+            forms = np.array([MEMORY_FORMS.index(held[k]) for k in chosen])
+        return Laboratories(np.hstack([self._whitened[chosen], normal, offsets]), rng.integers(SEEDS, size=n), forms)
 
     def values(self, some: Laboratories) -> Array:
         """Constants in their own units, in the order of the draws, memory in its own, and offsets (ln), (n, names)."""

@@ -135,7 +135,7 @@ def test_answers_without_a_likelihood_are_given_alone(
         raise np.linalg.LinAlgError
 
     out, lab, figure = (tmp_path / name for name in ("out.json", "lab.toml", "figure.svg"))
-    monkeypatch.setattr(Namings, "log_likelihood", singular)
+    monkeypatch.setattr(Namings, "weighed", singular)
     words = told(
         cli("pilot", two, "--answers", answers, *QUICK, "--json", out, "--figure", figure),
         *("two.cue felt & named ", "Test of fit (posterior predictive): p = "),
@@ -151,7 +151,7 @@ def test_answers_without_a_likelihood_are_given_alone(
     assert "the answers alone are given" in " ".join(said.stdout.split())
     path = tmp_path / "v.csv"
     path.write_text(VALUES, encoding="utf-8")
-    monkeypatch.setattr(MeasuredValues, "log_likelihood", singular)
+    monkeypatch.setattr(MeasuredValues, "weighed", singular)
     told(
         cli("pilot", two, "--measurements", path, *QUICK),
         *("condition people measured predicted 95 % ──", "The likelihood of the values cannot be used"),

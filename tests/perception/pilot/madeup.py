@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet
 from thermicon.perception.experiments.measure import ADAPTIVE, Condition, Setting, logs_of
-from thermicon.perception.observer.channels import CHANNELS
+from thermicon.perception.observer.channels import CHANNELS, MemoryForm
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.measurement_likelihood import measuring
 from thermicon.perception.pilot.measurements_file import Measurements
@@ -28,9 +28,11 @@ STREAM = 1000
 """Seeds of made-up laboratories begin here, away from those that predictions are made with."""
 
 
-def synthetic_trials(icons: IconSet, rig: Rig, *, participants: int, trials: int, seed: int) -> Trials:
+def synthetic_trials(
+    icons: IconSet, rig: Rig, *, participants: int, trials: int, seed: int, memory: MemoryForm = "episodes"
+) -> Trials:
     """Answers of people of a made-up laboratory to a set, its icons presented as evenly as possible."""
-    prior = LaboratoryPrior(PosteriorDraws.load(), "episodes")
+    prior = LaboratoryPrior(PosteriorDraws.load(), memory)
     played = stage(icons, rig, prior, seed=STREAM + seed).confusions(made_up_laboratory(prior, seed))
     rng = np.random.default_rng(np.random.SeedSequence([seed, 15]))
     invited = rng.integers(played.probability.shape[1], size=participants)

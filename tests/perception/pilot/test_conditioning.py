@@ -17,6 +17,8 @@ from thermicon.perception.pilot.states import Laboratories
 from thermicon.perception.pilot.trials import Trials
 
 ICONS, PEOPLE, DIMENSIONS = 3, 24, 6
+ALIKE = np.zeros((200, ICONS, ICONS))
+"""Scores of pairs in laboratories where none differs from the model."""
 
 
 def correct_at(place: np.ndarray, person: np.ndarray) -> np.ndarray:
@@ -36,7 +38,7 @@ class Toy:
 
 def laboratories(n: int, seed: int) -> Laboratories:
     rng = np.random.default_rng(seed)
-    return Laboratories(rng.standard_normal((n, DIMENSIONS)), rng.integers(2**31, size=n))
+    return Laboratories(rng.standard_normal((n, DIMENSIONS)), rng.integers(2**31, size=n), np.zeros(n, dtype=np.int64))
 
 
 def answers(place: float, participants: int, times: int, seed: int) -> np.ndarray:
@@ -69,13 +71,13 @@ def exact(counts: np.ndarray) -> tuple[float, float]:
     return mean, float(np.sqrt(weights @ (place - mean) ** 2))
 
 
-@pytest.mark.parametrize(("participants", "times", "rounds"), [(2, 5, 0), (80, 40, 2)])
-def test_both_ways_agree_with_integration(participants: int, times: int, rounds: int) -> None:
+@pytest.mark.parametrize(("participants", "times", "fresh"), [(2, 5, False), (80, 40, True)])
+def test_both_ways_agree_with_integration(participants: int, times: int, fresh: bool) -> None:
     counts = answers(0.8, participants, times, seed=4)
     found = condition(answered(counts), laboratories(1000, 1), seed=2)
     mean, sd = exact(counts)
     sample = found.after.place[:, 0]
-    assert found.rounds == rounds
+    assert (found.rounds > 0) == fresh
     assert abs(sample.mean() - mean) < 0.35 * sd
     assert 0.8 < sample.std() / sd < 1.25
     assert np.abs(found.after.place[:, 1:].mean(axis=0)).max() < 0.25  # what the answers do not touch stays the prior
@@ -89,7 +91,8 @@ def test_however_many_answers_there_are_the_laboratory_is_found(participants: in
     """More trials of the same people tell hardly more, more people do."""
     found = condition(answered(answers(0.8, participants, times, seed=4)), laboratories(300, 1), seed=2)
     sample = found.after.place[:, 0]
-    assert (found.unusable, found.rounds, found.effective_after) == ("", 2, 150.0)
+    assert (found.unusable, found.rounds > 0) == ("", True)
+    assert found.effective_after >= conditioning.LEAST_SHARE * len(sample)
     assert abs(sample.mean() - 0.8) < 0.25
     assert 0.02 < sample.std() < (0.2 if participants == 80 else 0.12)
 
@@ -102,23 +105,22 @@ def test_laboratories_far_from_many_answers_keep_a_weight_and_from_few_the_same(
     given: list[np.ndarray] = []
     monkeypatch.setattr(conditioning.PooledLikelihood, "fit", lambda *arguments: given.append(arguments[-1]))
     some = laboratories(101, 1)
-    answered(answers(0.8, 4, 10, seed=4)).polynomial(
-        some.place, Toy().confusions(some), times * np.linspace(0.0, 50.0, 101)
-    )
+    short, rng = times * np.linspace(0.0, 50.0, 101), np.random.default_rng(0)
+    answered(answers(0.8, 4, 10, seed=4)).polynomial(some, Toy().confusions(some), -short, rng)
     assert given[0][4] == pytest.approx(near, rel=0.01)  # 2 in ln L
     assert given[0][90] >= least
 
 
 @pytest.mark.parametrize("times", [1, 1000, 10_000_000])
 def test_the_least_variance_of_a_cell_decides_nothing(times: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    some, grid = laboratories(200, 3), laboratories(50, 5).place
+    some, grid = laboratories(200, 3), laboratories(50, 5)
     counts, played = times * answers(0.8, 20, 20, seed=4), Toy().confusions(some)
     rounded = replace(played, probability=played.probability.astype(np.float32))
-    expected = PooledLikelihood.fit(some.place, played, counts)(grid)
+    expected = PooledLikelihood.fit(some, played, counts, ALIKE)(grid.place, grid.form)
     assert np.ptp(expected) > 3.0
     monkeypatch.setattr(likelihood, "RIDGE", 10.0 * likelihood.RIDGE)
     for each in (played, rounded):
-        found = PooledLikelihood.fit(some.place, each, counts)(grid)
+        found = PooledLikelihood.fit(some, each, counts, ALIKE)(grid.place, grid.form)
         np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-3)
 
 
@@ -144,11 +146,12 @@ def test_as_far_is_as_far_but_for_rounding_whatever_the_size() -> None:
 
 def test_a_polynomial_that_fits_badly_still_covers() -> None:
     """Laboratories are of two kinds: no polynomial jumps, so that answers tell less than they could."""
-    rng, some, grid = np.random.default_rng(6), laboratories(200, 3), laboratories(2000, 5).place
+    rng, some, grid = np.random.default_rng(6), laboratories(200, 3), laboratories(2000, 5)
     played, covered = Toy().confusions(replace(some, place=2.0 * np.sign(some.place))), []
     for seed, truth in enumerate(rng.standard_normal(24).tolist()):
-        likely = PooledLikelihood.fit(some.place, played, answers(2.0 * np.sign(truth), 12, 20, seed))
-        low, high = weighted_quantile(grid[:, 0], normalised_weights(likely(grid)), (0.025, 0.975))
+        likely = PooledLikelihood.fit(some, played, answers(2.0 * np.sign(truth), 12, 20, seed), ALIKE)
+        weights = normalised_weights(likely(grid.place, grid.form))
+        low, high = weighted_quantile(grid.place[:, 0], weights, (0.025, 0.975))
         covered.append(low <= truth <= high)
     assert np.mean(covered) > 0.85
 
@@ -223,5 +226,8 @@ def test_trials_that_all_have_an_answer_say_nothing_of_what_is_felt_and_silence_
     fit, other = compare(forced, played), compare(free, played)
     assert (fit.p_reports, fit.felt_and_named, fit.reports) == (None, None, ())
     assert (fit.p, fit.proportion_correct, fit.pairs) == (other.p, other.proportion_correct, other.pairs)
-    likely = [Namings(each, Toy()).log_likelihood(played) for each in (forced, free)]  # type: ignore[arg-type]
+    likely = [
+        Namings(each, Toy()).weighed(played, np.random.default_rng(0))[0]  # type: ignore[arg-type]
+        for each in (forced, free)
+    ]
     assert np.array_equal(*likely)

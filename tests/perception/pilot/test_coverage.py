@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.stats import t
 
 from tests.builders import weighted_quantile
 from tests.perception.pilot.madeup import USUAL, answers_of, measurements_of, spread
@@ -17,15 +19,18 @@ from thermicon.circuit import Rig
 from thermicon.icons import read_cue
 from thermicon.perception.experiments.measure import Setting
 from thermicon.perception.identification.new_laboratory import COVER
+from thermicon.perception.identification.pairs import pair_scores
+from thermicon.perception.observer.channels import MemoryChoice
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.conditioning import LEAST_EFFECTIVE, LEAST_SHARE, Namings, condition
 from thermicon.perception.pilot.likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import log_likelihood, predicted
-from thermicon.perception.pilot.playing import Confusions, stage
+from thermicon.perception.pilot.playing import Confusions, Stage, stage
 from thermicon.perception.pilot.states import SEEDS, Laboratories, LaboratoryPrior
 from thermicon.perception.pilot.trials import Trials
 
 ENDS = (0.025, 0.975)
+NAMED = "probability", "reported"
 PILOTS = int(os.environ.get("THERMICON_PILOTS", "40"))
 RIG = Rig.load("thenar")
 Floats = NDArray[np.float64]
@@ -42,14 +47,14 @@ class Bench:
     rng: np.random.Generator
 
     @classmethod
-    def of(cls, laboratories: int, truths: int, seed: int) -> Bench:
-        rng, prior = np.random.default_rng(seed), LaboratoryPrior(PosteriorDraws.load(), "episodes")
+    def of(cls, laboratories: int, truths: int, seed: int, memory: MemoryChoice = "episodes") -> Bench:
+        rng, prior = np.random.default_rng(seed), LaboratoryPrior(PosteriorDraws.load(), memory)
         own = rng.choice(laboratories, truths, replace=False)
         return cls(prior, prior.first(laboratories, 1), prior.first(laboratories, 77).of(own), own, rng)
 
     def other_people(self, some: Laboratories) -> Laboratories:
         """The same laboratories with people who did not take part."""
-        return Laboratories(some.place, self.rng.integers(SEEDS, size=len(some)))
+        return replace(some, seed=self.rng.integers(SEEDS, size=len(some)))
 
     def judged(
         self, weights_of: Callable[[int], tuple[Floats, float]], *predictions: tuple[Floats, Floats]
@@ -94,7 +99,8 @@ def test_intervals_cover_two_hundred_laboratories_and_twenty_trials_narrow_a_lit
             logs[bench.own[k]] = -np.inf  # the draw that the laboratory was made from
             size = effective(normalised_weights(logs))
             if size < min(LEAST_EFFECTIVE, LEAST_SHARE * len(logs)):  # as `condition` does, without fresh ones
-                logs = PooledLikelihood.fit(bench.some.place, answered, counts)(bench.some.place)
+                alike, some = np.zeros((len(logs), 6, 6)), bench.some
+                logs = PooledLikelihood.fit(some, answered, counts, alike)(some.place, some.form)
                 logs[bench.own[k]] = -np.inf
             return logs, size
 
@@ -109,36 +115,72 @@ def test_intervals_cover_two_hundred_laboratories_and_twenty_trials_narrow_a_lit
     assert four[0] > 150
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("odds_sd", [0.0, 1.0])
-def test_large_pilots_are_conditioned_on_whether_or_not_pairs_are_as_predicted(odds_sd: float) -> None:
-    """Forty people with 192 trials each; the odds of each confusion differ from the model by so much (SD of ln)."""
-    bench = Bench.of(300, min(PILOTS, 300), 12)
-    six = stage(read_cue("six-icons"), RIG, bench.prior)
-    simulated, true, left = (six.confusions(some) for some in (bench.some, bench.true, bench.other_people(bench.true)))
+@dataclass(frozen=True)
+class Truth:
+    """Made-up laboratories of either form of memory, whose pairs differ from the model by `spread` (SD of ln odds).
 
-    @dataclass(frozen=True)
-    class Known(Namings):
+    `asked` are people from whom participants come, `mean` the confusions (laboratories, icons, icons) of many others.
+    """
+
+    asked: Confusions
+    mean: Floats
+    groups: ClassVar[int] = 8
+
+    @classmethod
+    def of(cls, bench: Bench, played: Stage, spread: float) -> Truth:
+        scores = np.triu(bench.rng.standard_normal((len(bench.own), 6, 6)), 1)
+
+        def people() -> Confusions:
+            each = []
+            for _ in range(cls.groups):
+                usual = played.confusions(bench.other_people(bench.true))
+                usual = replace(usual, spread=np.full(len(bench.own), spread))
+                each.append(usual.with_scores(scores + scores.swapaxes(1, 2)))
+            named, reported = (np.concatenate([getattr(one, name) for one in each], axis=1) for name in NAMED)
+            return Confusions(played.icons, named, reported)
+
+        return cls(people(), people().pooled)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("spread", [0.0, 1.0])
+@pytest.mark.parametrize(("participants", "times", "wider"), [(8, 8, 1.0), (20, 16, 1.1), (40, 32, 1.5)])
+def test_pilots_cover_laboratories_of_either_memory_whether_or_not_their_pairs_are_as_predicted(
+    spread: float, participants: int, times: int, wider: float
+) -> None:
+    """Each icon is shown so many `times`; intervals are at most so many times `wider` than Student's."""
+    bench = Bench.of(300, min(PILOTS, 300), 12, "both")
+    six = stage(read_cue("six-icons"), RIG, bench.prior)
+    truth, simulated = Truth.of(bench, six, spread), six.confusions(bench.some)
+    before = simulated.with_scores(pair_scores(six.icons, 300, 3))
+
+    class Known(Stage):
         """The laboratories of the bench are simulated once for all pilots."""
 
-        def simulate(self, some: Laboratories, step: Callable[[], None] | None = None) -> Confusions:
-            return simulated if some is bench.some else super().simulate(some, step)
+        def confusions(self, some: Laboratories, step: Callable[[], None] | None = None) -> Confusions:
+            return simulated if some is bench.some else six.confusions(some, step)
 
-    covered = []
+    rows, upper = [], np.triu_indices(6, 1)
     for k in range(len(bench.own)):
-        odds = np.exp(odds_sd * np.triu(bench.rng.standard_normal((6, 6)), 1))
-        asked, others = (played.of(np.array([k])).probability * odds * odds.T for played in (true, left))
-        asked, others = asked / asked.sum(axis=-1, keepdims=True), others / others.sum(axis=-1, keepdims=True)
-        presented, who = np.full((40, 6), 32.0), bench.rng.integers(asked.shape[1], size=40)
-        counts = answers_of(Confusions(six.icons, asked, true.reported), who, presented, bench.rng)
-        trials = Trials(six.icons, tuple(f"P{number}" for number in range(40)), counts)
-        found = condition(Known(trials, six), bench.some, seed=k)
+        who = bench.rng.integers(truth.asked.probability.shape[1], size=participants)
+        shown = np.full((participants, 6), float(times))
+        counts = answers_of(truth.asked.of(np.array([k])), who, shown, bench.rng)
+        trials = Trials(six.icons, tuple(f"P{number}" for number in range(participants)), counts)
+        known = Known(six.icons, six.played, six.prior, six.skins)
+        found = condition(Namings(trials, known), bench.some, seed=k)
         assert not found.unusable
+        mean, pairs = truth.mean[k].trace() / 6, (truth.mean[k] + truth.mean[k].T)[upper]
         low, high = np.percentile(found.simulated_after.correct, COVER)
-        assert 0.0 < low < high <= 1.0
-        covered.append(low <= np.trace(others, axis1=2, axis2=3).mean() / 6 <= high)
-    if not odds_sd:  # the pairs of other laboratories are not in the model yet
-        assert np.mean(covered) > 0.85 - 1.0 / len(covered)
+        after = found.simulated_after.pooled
+        least, most = np.percentile((after + after.swapaxes(1, 2))[:, upper[0], upper[1]], COVER, axis=0)
+        each = np.trace(counts, axis1=1, axis2=2) / counts.sum(axis=(1, 2))
+        student = 2.0 * t.ppf(0.975, participants - 1) * each.std(ddof=1) / np.sqrt(participants)
+        rows.append([low <= mean <= high, ((least <= pairs) & (pairs <= most)).mean(), high - low, student])
+    covered, of_pairs, width, alone = np.mean(rows, axis=0).tolist()
+    chance = 1.6 * np.sqrt(0.1 / len(rows))
+    assert covered >= 0.9 - chance and of_pairs >= 0.88 - 0.05
+    assert width <= 1.05 * wider * alone
+    assert np.ptp(np.percentile(before.correct, COVER)) >= 1.15 * width
 
 
 @pytest.mark.slow

@@ -11,6 +11,7 @@ from thermicon.circuit import Rig
 from thermicon.icons import IconSet
 from thermicon.perception import rank
 from thermicon.perception.identification.new_laboratory import DRAWS
+from thermicon.perception.observer.channels import FORM
 from thermicon.perception.observer.constants import BETWEEN_LABORATORIES
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import Observer
@@ -22,6 +23,13 @@ from thermicon.perception.pilot.prediction import Fit
 from thermicon.perception.pilot.states import LaboratoryPrior
 from thermicon.perception.pilot.trials import Trials
 from thermicon.perception.ranking.sensitivity import sensitivity
+
+MEMORY = {
+    "rated_share": "share of the scatter of ratings",
+    "episode_bar": "bar of an episode",
+    "timing_noise": "memory noise (episodes)",
+    "pair_spread": "spread of pairs between laboratories",
+}
 
 
 @pytest.fixture(scope="module")
@@ -97,33 +105,38 @@ def test_files_are_read_by_observer_and_draws(found: Observed[Namings, Fit], lab
 
 def test_memory_stands_beside_the_constants_of_each_draw(found: Observed[Namings, Fit], lab: Path) -> None:
     draws = PosteriorDraws.load(lab.with_suffix(".csv"))
-    assert draws.memory_names == ("share of the scatter of ratings", "bar of an episode", "memory noise (episodes)")
     assert np.array_equal(draws.draws, found.draws().draws) and np.array_equal(draws.memory, found.draws().memory)
-    values = found.prior.values(found.conditioned.after)
+    after = found.conditioned.after
+    values = found.prior.values(after)
     for k, name in enumerate(draws.memory_names):
-        column = values[:, found.prior.names.index(name)]
+        column = after.form if name == FORM else values[:, found.prior.names.index(name)]
         assert np.allclose(np.sort(draws.memory[:, k]), np.sort(column), rtol=1e-5)
-    person = draws.observer(3)
-    assert (person.rated_share, person.episode_bar, person.timing_noise) == tuple(draws.memory[3])
-    assert draws.table(3).one("memory noise", method="episodes").central == draws.memory[3, 2]
-    assert draws.table(3).one("bar of an episode").central == draws.memory[3, 1]
+    person, own = draws.observer(3), draws.draw(3)
+    for field, name in MEMORY.items():
+        assert getattr(person, field) == own[name]
+    assert draws.table(3).one("memory noise", method="episodes").central == own["memory noise (episodes)"]
+    assert draws.table(3).one("bar of an episode").central == own["bar of an episode"]
 
 
 @pytest.mark.parametrize(
-    ("memory", "said"),
+    ("name", "value", "said"),
     [
-        (("1.5", "1", "0.3"), r"share of the scatter of ratings: 1\.5 must lie in 0 to 1"),
-        (("0.5", "1", "-0.3"), r"memory noise \(episodes\): -0\.3 must be above 0"),
-        (("0.5", "0", "0.3"), r"bar of an episode: 0 must be above 0"),
+        ("share of the scatter of ratings", "1.5", r"share of the scatter of ratings: 1\.5 must lie in 0 to 1"),
+        ("memory noise (episodes)", "-0.3", r"memory noise \(episodes\): -0\.3 must be above 0"),
+        ("bar of an episode", "0", r"bar of an episode: 0 must be above 0"),
+        ("spread of pairs between laboratories", "-1", r"spread of pairs between laboratories: -1 must be 0 or more"),
+        (FORM, "2", r"form of memory: 2 must lie in 0 to 1"),
     ],
 )
 def test_memory_that_cannot_be_is_refused(
-    found: Observed[Namings, Fit], tmp_path: Path, memory: tuple[str, ...], said: str
+    found: Observed[Namings, Fit], tmp_path: Path, name: str, value: str, said: str
 ) -> None:
     path = tmp_path / "lab.csv"
     lines = [line for line in found.files()[1].splitlines() if not line.startswith("# sha256")]
-    first = next(k for k, line in enumerate(lines) if not line.startswith("#")) + 1
-    lines[first] = ",".join([*lines[first].split(",")[:-3], *memory])
+    head = next(k for k, line in enumerate(lines) if not line.startswith("#"))
+    row = lines[head + 1].split(",")
+    row[lines[head].split(",").index(name)] = value
+    lines[head + 1] = ",".join(row)
     path.write_text("\n".join(lines), encoding="utf-8")
     with pytest.raises(RecordError, match=said):
         PosteriorDraws.load(path)
@@ -131,19 +144,30 @@ def test_memory_that_cannot_be_is_refused(
 
 def test_a_kept_laboratory_is_the_prior_of_the_next_prediction_and_has_its_memory(lab: Path) -> None:
     draws = PosteriorDraws.load(lab.with_suffix(".csv"))
-    prior = LaboratoryPrior.of(lab.with_suffix(".csv"), "episodes")
-    values = prior.values(prior.first(len(draws), 3))
+    prior = LaboratoryPrior.of(lab.with_suffix(".csv"), "both")
+    first = prior.first(len(draws), 3)
+    values = prior.values(first)
     assert np.abs(values[:, prior.names.index("sensitivity of the laboratory, cold")]).max() < 1e-4
     assert prior.names.count("memory noise (episodes)") == 1
     for k, name in enumerate(draws.memory_names):
-        assert np.allclose(values[:, prior.names.index(name)], draws.memory[:, k], rtol=1e-4, atol=1e-5)
-    naming = LaboratoryPrior(draws, "naming")  # its own memory is not all that naming needs
-    others = naming.values(naming.first(len(draws), 3))
-    assert np.ptp(others[:, naming.names.index("cost of a missing episode")]) > 4.0
-    column = others[:, naming.names.index("memory noise (episodes)")]
-    assert np.allclose(column, draws.memory[:, draws.memory_names.index("memory noise (episodes)")], rtol=1e-4)
+        column = first.form if name == FORM else values[:, prior.names.index(name)]
+        assert np.allclose(column, draws.memory[:, k], rtol=1e-4, atol=1e-5)
     with pytest.raises(ValueError, match=r"lab.toml has no posterior draws, .*give a table of draws \(.csv\)"):
-        LaboratoryPrior.of(lab, "episodes")
+        LaboratoryPrior.of(lab, "both")
+
+
+def test_a_laboratory_that_was_kept_before_it_had_a_form_remembers_episodes(
+    found: Observed[Namings, Fit], tmp_path: Path
+) -> None:
+    path = tmp_path / "older.csv"
+    lines = [line for line in found.files()[1].splitlines() if not line.startswith("# sha256")]
+    head = next(k for k, line in enumerate(lines) if not line.startswith("#"))
+    assert lines[head].endswith(f",{FORM}")
+    lines[head:] = [line.rsplit(",", 1)[0] for line in lines[head:]]
+    path.write_text("\n".join(lines), encoding="utf-8")
+    some = LaboratoryPrior.of(path, "both").first(20, 3)
+    assert not some.form.any()
+    assert LaboratoryPrior.of(path, "naming").first(20, 3).form.all(), "a form that is named is obeyed"
 
 
 def test_thresholds_carry_the_offset_of_the_laboratory(found: Observed[Namings, Fit]) -> None:
@@ -157,7 +181,9 @@ def test_thresholds_carry_the_offset_of_the_laboratory(found: Observed[Namings, 
 def test_answers_without_a_likelihood_stand_alone(
     icons: IconSet, rig: Rig, answers: Trials, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(Namings, "log_likelihood", lambda _, simulated: np.full(len(simulated.probability), np.nan))
+    monkeypatch.setattr(
+        Namings, "weighed", lambda _, simulated, rng: (np.full((len(simulated.probability), 1), np.nan), 0.0)
+    )
     found = observed(answers, icons, rig, others=[icons], draws=20, seed=1)
     low, high = found.data.pooled.named_interval or (0.0, 0.0)
     assert f"{100 * low:.0f}–{100 * high:.0f} %" in found.unusable and found.unusable in repr(found)
