@@ -5,6 +5,7 @@ normal z that is the same both ways and for all people of a laboratory: their me
 """
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from thermicon.base.numbers.arrays import Array
 
@@ -37,5 +38,10 @@ def with_pairs(confusion: Array, spread: float, scores: Array) -> Array:
     >>> bool((with_pairs(one, 0.0, np.ones((2, 2))) == one).all())
     True
     """
-    others = 1.0 - np.eye(confusion.shape[-1])
-    return normalised(confusion * np.exp(others * (spread * scores - 0.5 * spread**2)))
+    return normalised(confusion * np.exp(pair_log_odds(spread, scores)))
+
+
+def pair_log_odds(spread: ArrayLike, scores: Array) -> Array:
+    """What the pairs of a laboratory add to ln odds against the own name, (..., icons, icons)."""
+    tau, others = np.asarray(spread, dtype=np.float64), 1.0 - np.eye(scores.shape[-1])
+    return np.asarray(others * (tau * scores - 0.5 * tau**2))

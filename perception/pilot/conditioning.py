@@ -189,7 +189,7 @@ class Namings:
 
     def by_chance(self, simulated: Confusions, seed: int) -> Confusions:
         """Confusions with pairs as they may be before any answer."""
-        return simulated.with_scores(pair_scores(simulated.icons, len(simulated.probability), seed))
+        return simulated.with_scores(pair_scores(len(simulated.icons), len(simulated.probability), seed))
 
     def with_scores(self, simulated: Confusions, scores: Array) -> Confusions:
         """Confusions with these pairs."""
@@ -220,7 +220,7 @@ class Namings:
         short = best - logs
         near = max(NEAR_ANSWERS, float(np.quantile(short, 0.9)) / FARTHEST)
         weight = 1.0 / (1.0 + np.square(short / near))
-        scores = pair_scores(simulated.icons, len(some), int(rng.integers(SEEDS)))
+        scores = pair_scores(len(simulated.icons), len(some), int(rng.integers(SEEDS)))
         return PooledLikelihood.fit(some, simulated, self.trials.counts, scores, weight)
 
     def compare(self, simulated: Confusions, seed: int) -> Fit:

@@ -260,7 +260,10 @@ def observed(
 
     def both(played: Stage) -> tuple[Confusions, Confusions]:
         first, then = (evened(some, played.confusions(some, step)) for some in (before, found.after))
-        pairs = pair_scores(played.icons, number, seed), known_scores(names, found.scores, played.icons, kept, seed)
+        pairs = (
+            pair_scores(len(played.icons), number, seed),
+            known_scores(names, found.scores, played.icons, kept, seed),
+        )
         return first.with_scores(pairs[0]), then.with_scores(pairs[1][: len(found.after)])
 
     pairs = [(found.simulated, found.simulated_after) if isinstance(trials, Trials) else both(main)]

@@ -1,9 +1,9 @@
 r"""What answers say of the pairs of a laboratory, given its constants.
 
 The pooled answers to an icon are multinomial. Their ln odds against its own name are those of the laboratory's people,
-plus τz of the pair, what a smooth prediction misses, and what J participants happen to be:
+plus τz − τ²/2 of the pair, what a smooth prediction misses, and what J participants happen to be:
 
-    θ = ln odds(ℓ) + w,   w ~ N(0, K)
+    θ = ln odds(ℓ) − τ²/2 + w,   w ~ N(0, K)
     K[ab, cd] = τ²·[{a, b} = {c, d}] + M[ab, cd] + R[ab, cd]·Σ_j n_ja n_jc / (Σ_j n_ja Σ_j n_jc)
 
 R is the relative covariance of people, the mean over laboratories. The posterior of w is taken as normal about its mode
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from thermicon.base.numbers.arrays import Array
 
-from ..identification.pairs import pair_scores
+from ..identification.pairs import pair_log_odds, pair_scores
 from .playing import Confusions
 
 MOST_PAIRS = 45
@@ -67,10 +67,11 @@ class PairPosterior:
             acts = np.concatenate([acts, np.broadcast_to(np.eye(cells), (count, cells, cells))], axis=2)
         reach = acts @ held
         prior = reach @ np.swapaxes(acts, 1, 2) + people
-        log_odds, moved = np.zeros(pooled.shape), np.zeros((count, cells))
+        usual_pairs = pair_log_odds(spread, np.zeros(pooled.shape))
+        log_odds, moved = usual_pairs.copy(), np.zeros((count, cells))
         for _ in range(PASSES):
             shown = np.log(played.with_log_odds(log_odds).pooled)
-            usual = shown - np.diagonal(shown, axis1=1, axis2=2)[:, :, None] - log_odds
+            usual = shown - np.diagonal(shown, axis1=1, axis2=2)[:, :, None] - log_odds + usual_pairs
             for _ in range(STEPS):
                 odds = usual.copy()
                 odds[:, row, column] += moved
@@ -83,7 +84,7 @@ class PairPosterior:
                 force = np.linalg.solve(inner, steep @ moved[:, :, None] + slope[:, :, None])
                 moved = moved + np.clip((prior @ force)[:, :, 0] - moved, -LONGEST, LONGEST)
             mode = np.swapaxes(reach, 1, 2) @ force
-            log_odds[:, row, column] = (acts @ mode)[:, :, 0]
+            log_odds[:, row, column] = usual_pairs[:, row, column] + (acts @ mode)[:, :, 0]
         logs = (answers * np.log(share)).sum(axis=(1, 2)) - 0.5 * (force[:, :, 0] * moved).sum(axis=1)
         known = np.swapaxes(reach, 1, 2) @ np.linalg.solve(inner, steep @ reach)
         covariance = held - 0.5 * (known + np.swapaxes(known, 1, 2)) + LEAST * np.eye(len(held))
@@ -98,9 +99,9 @@ class PairPosterior:
         """
         chance, (first, second), played = rng.standard_normal(self.mode.shape), (self.first, self.second), self.played
         own = self.mode + (self.root @ chance[:, :, None])[:, :, 0]
-        scores = pair_scores(played.icons, len(own), int(rng.integers(2**31)))
+        scores = pair_scores(len(played.icons), len(own), int(rng.integers(2**31)))
         scores[:, first, second] = scores[:, second, first] = own[:, : len(first)]
-        log_odds = played.spread[:, None, None] * scores
+        log_odds = pair_log_odds(played.spread[:, None, None], scores)
         if own.shape[1] > len(first):
             log_odds[:, first, second] += own[:, len(first) : 2 * len(first)]
             log_odds[:, second, first] += own[:, 2 * len(first) :]
@@ -115,10 +116,10 @@ def known_scores(names: tuple[str, ...], scores: Array, of: tuple[str, ...], lab
     >>> own = known_scores(("a", "b"), np.array([[[0.0, 3.0], [3.0, 0.0]]]), ("b", "c", "a"), 1, 0)
     >>> float(own[0, 0, 2]), bool(own[0, 0, 1] == own[0, 1, 0] != 0.0)
     (3.0, True)
-    >>> bool((known_scores(("a", "b"), np.ones((1, 2, 2)), ("c", "d"), 1, 0) == pair_scores(("c", "d"), 1, 0)).all())
+    >>> bool((known_scores(("a", "b"), np.ones((1, 2, 2)), ("c", "d"), 1, 0) == pair_scores(2, 1, 0)).all())
     True
     """
-    found = pair_scores(of, laboratories, seed)
+    found = pair_scores(len(of), laboratories, seed)
     if scores.size:
         both = [name for name in names if name in of]
         here, there = (np.array([places.index(name) for name in both], dtype=np.int64) for places in (names, of))

@@ -199,7 +199,9 @@ def plan(
     laboratories = prior.first(number, seed)
     step = step_counter(progress, number * len(sets) + len(participants) * len(trials))
     stages = [stage(each, rig, prior, seed=seed, tracking=crowd.tracking) for each in sets]
-    played = [each.confusions(laboratories, step).with_scores(pair_scores(each.icons, number, seed)) for each in stages]
+    played = [
+        each.confusions(laboratories, step).with_scores(pair_scores(len(each.icons), number, seed)) for each in stages
+    ]
     apart = None if other is None else played[0].correct - played[1].correct
     pooled: Array = played[0].pooled.mean(axis=0)
     confused = np.triu(pooled + pooled.T, k=1)

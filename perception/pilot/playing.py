@@ -17,7 +17,7 @@ from ..identification.confusion import few_named, normalised
 from ..identification.depths import rungs
 from ..identification.laboratory_draws import EVERY, people_for_intervals
 from ..identification.measures import felt_and_named, information_bits
-from ..identification.pairs import with_pairs
+from ..identification.pairs import pair_log_odds
 from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond, run_end_s
 from ..kernels.parallel import in_order
 from ..observer.channels import MEMORY_FORMS
@@ -84,11 +84,11 @@ class Confusions:
 
     def with_scores(self, scores: Array) -> Confusions:
         """The same with pairs of scores (laboratories, icons, icons) in units of each laboratory's spread."""
-        return self.with_log_odds(self.spread[:, None, None] * scores)
+        return self.with_log_odds(pair_log_odds(self.spread[:, None, None], scores))
 
     def with_log_odds(self, log_odds: Array) -> Confusions:
         """The same with other odds of each answer (laboratories, icons, icons), for all people of a laboratory."""
-        return replace(self, probability=with_pairs(self.probability, log_odds[:, None]))
+        return replace(self, probability=normalised(self.probability * np.exp(log_odds[:, None])))
 
 
 @dataclass(frozen=True, slots=True)

@@ -152,7 +152,7 @@ def test_pilots_cover_laboratories_of_either_memory_whether_or_not_their_pairs_a
     bench = Bench.of(300, min(PILOTS, 300), 12, "both")
     six = stage(read_cue("six-icons"), RIG, bench.prior)
     truth, simulated = Truth.of(bench, six, spread), six.confusions(bench.some)
-    before = simulated.with_scores(pair_scores(six.icons, 300, 3))
+    before = simulated.with_scores(pair_scores(len(six.icons), 300, 3))
 
     class Known(Stage):
         """The laboratories of the bench are simulated once for all pilots."""

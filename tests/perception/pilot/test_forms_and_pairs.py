@@ -132,7 +132,7 @@ def test_a_pair_agrees_with_integration_over_its_score(wrong: float) -> None:
     counts = np.array([[[shown - wrong, wrong], [wrong, shown - wrong]]])
     found = PairPosterior.of(played, None, counts)
     z = np.linspace(-8.0, 8.0, 4001)
-    odds = np.exp(spread * z) / 9.0
+    odds = np.exp(spread * z - 0.5 * spread**2) / 9.0
     log = 2.0 * (wrong * np.log(odds / (1.0 + odds)) - (shown - wrong) * np.log1p(odds)) - 0.5 * z**2
     weight = np.exp(log - log.max())
     mean = (weight * z).sum() / weight.sum()
