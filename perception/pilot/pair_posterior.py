@@ -25,7 +25,7 @@ from .playing import Confusions
 
 MOST_PAIRS = 45
 """Pairs that answers may move: of sets of more than 10 icons those that are confused most, or were."""
-PASSES, STEPS, LONGEST = 3, 5, 1.0
+PASSES, STEPS, LONGEST = 3, 8, 1.0
 """Passes with the people's own odds, Newton steps in each, and the longest step (ln)."""
 LEAST = 1e-9
 Places = NDArray[np.int64]
@@ -68,7 +68,8 @@ class PairPosterior:
         reach = acts @ held
         prior = reach @ np.swapaxes(acts, 1, 2) + people
         usual_pairs = pair_log_odds(spread, np.zeros(pooled.shape))
-        log_odds, moved = usual_pairs.copy(), np.zeros((count, cells))
+        # From the people's own odds, to which answers are nearer than to what is usual of pairs that differ much.
+        log_odds, moved = np.zeros(pooled.shape), -usual_pairs[:, row, column]
         for _ in range(PASSES):
             shown = np.log(played.with_log_odds(log_odds).pooled)
             usual = shown - np.diagonal(shown, axis1=1, axis2=2)[:, :, None] - log_odds + usual_pairs

@@ -48,7 +48,7 @@ def test_a_pair_that_is_confused_moves_and_others_hardly(confused: Observed[Nami
     assert 0.15 < both < 0.4, "a third of the answers"
     off = after - before
     off[[a, b], [b, a]] = 0.0
-    assert off[~np.eye(6, dtype=bool)].max() < 0.02
+    assert off[~np.eye(6, dtype=bool)].max() < 0.04
     scores = confused.conditioned.scores.mean(axis=0)
     assert scores[a, b] > 0.8 and scores[a, b] == scores.max()
 
@@ -124,11 +124,12 @@ def test_people_counted_in_few_trials_differ_as_much_as_they_do(spread: float) -
     assert named[..., 0].std() > found[..., 0].std() + (0.05 if spread == 0.0 else 0.01)
 
 
-@pytest.mark.parametrize("wrong", [0.0, 3.0, 30.0])
-def test_a_pair_agrees_with_integration_over_its_score(wrong: float) -> None:
+@pytest.mark.parametrize("spread", [0.3, 1.0, 3.0])
+@pytest.mark.parametrize("wrong", [1.0, 3.0, 30.0])
+def test_a_pair_agrees_with_integration_over_its_score(wrong: float, spread: float) -> None:
     """People who are all alike, whose answers are then binomial."""
-    chance, shown, spread = np.array([[0.9, 0.1], [0.1, 0.9]]), 100.0, 1.0
-    played = Confusions(("a", "b"), np.broadcast_to(chance, (1, 24, 2, 2)).copy(), np.ones((1, 24, 2)), np.ones(1))
+    chance, shown, spreads = np.array([[0.9, 0.1], [0.1, 0.9]]), 100.0, np.full(1, spread)
+    played = Confusions(("a", "b"), np.broadcast_to(chance, (1, 24, 2, 2)).copy(), np.ones((1, 24, 2)), spreads)
     counts = np.array([[[shown - wrong, wrong], [wrong, shown - wrong]]])
     found = PairPosterior.of(played, None, counts)
     z = np.linspace(-8.0, 8.0, 4001)
