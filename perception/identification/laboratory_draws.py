@@ -176,15 +176,17 @@ SAMPLES, LEAST, NAMED = 512, 128, 8192
 
 @dataclass(frozen=True)
 class TakingPart:
-    """Which constants (constants,) take part in how a set is named: computed when it is first asked, then kept."""
+    """Which constants take part in how a set is named, with what computes it."""
 
     compute: Callable[[], NDArray[np.bool_]]
 
     @cached_property
     def acting(self) -> NDArray[np.bool_]:
+        """One for each of (constants,), kept once it was asked for."""
         return self.compute()
 
     def __call__(self) -> NDArray[np.bool_]:
+        """See `acting`."""
         return self.acting
 
 
