@@ -87,7 +87,7 @@ def site_warnings(file: str, icons: IconSet | Icon, rig: Rig) -> tuple[str, ...]
 
 def site_meant(site: str | None) -> str:
     """Which site is meant by one that neither a shipped rig nor published data know; empty for a known one."""
-    from thermicon.base.words.near_words import nearest_words
+    from thermicon.base.words.near_words import proposals
 
     shipped = (resources.files("thermicon.circuit") / "rigs").iterdir()
     rigs = {tomllib.loads(rig.read_text("utf-8"))["skin"]["site"] for rig in shipped}
@@ -98,7 +98,7 @@ def site_meant(site: str | None) -> str:
     if not outside_site(site.replace("-", " ")):
         return ""
     known = sorted({*rigs, *(str(record.site) for record in load_coverage().select("site"))})
-    near = nearest_words(site.lower(), known, cutoff=0.75) or list(filter(None, nearest_site(site)[:1]))
+    near = proposals(site, known, cutoff=0.75) or list(filter(None, nearest_site(site)[:1]))
     return f"; did you mean site {near[0]}?" if near else f"; known: {', '.join(known)}"
 
 

@@ -5,7 +5,7 @@ import re
 from itertools import islice
 from pathlib import Path
 
-from ..words.near_words import nearest_words
+from ..words.near_words import nearest_words, proposals
 
 MOST_LOOKED_AT = 1000
 """Files of a folder among which a similar name is looked for."""
@@ -31,5 +31,5 @@ def beside(path: str | Path, ending: str = "") -> str:
         if each.name.startswith(longer) or not suffix or nearest_words(suffix, [each.suffix], cutoff=0.7)
     ]
     names = {each.name if wanted.suffix else each.stem: each.name for each in alike}
-    close = nearest_words(wanted.name, names, cutoff=0.7)
+    close = proposals(wanted.name, names, cutoff=0.7)
     return str(wanted.with_name(names[close[0]])) if close else ""

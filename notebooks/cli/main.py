@@ -155,7 +155,7 @@ def reworded(error: Any) -> None:
     `error` is a bad parameter of the command line; others stay as they are.
     """
     from thermicon.base.files.inputs import quoted
-    from thermicon.base.words.near_words import nearest_words
+    from thermicon.base.words.near_words import proposals
 
     param, faults = getattr(error, "param", None), getattr(error.__cause__, "errors", None)
     if param is None or faults is None:
@@ -169,7 +169,7 @@ def reworded(error: Any) -> None:
     else:
         wrong, joint, choices = error.message.removeprefix("Value error, ").removesuffix(".").partition(" is not one ")
         choices = choices.replace("'", "")
-        near = nearest_words(text, choices.removeprefix("of ").split(", "), cutoff=0.55)
+        near = proposals(text, choices.removeprefix("of ").split(", "))
         error.message = wrong + joint + choices + (f"; did you mean {near[0]}?" if near else "")
 
 

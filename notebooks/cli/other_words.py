@@ -8,7 +8,7 @@ from typing import Any
 
 import typer
 
-from thermicon.base.words.near_words import nearest_words
+from thermicon.base.words.near_words import proposals
 
 
 def answer_to(word: str) -> str:
@@ -36,7 +36,7 @@ def unknown_command(word: str, commands: Iterable[str]) -> str:
     for package in ("icons", "circuit", "perception", "notebooks"):
         if word in import_module(f"thermicon.{package}").__all__:
             return f"in Python it is thermicon.{package}.{word}"
-    near = nearest_words(word, commands, 2, 0.55)
+    near = proposals(word, commands, 2)
     return f"did you mean {' or '.join(near)}?" if near else "thermicon --help lists all"
 
 
@@ -57,7 +57,7 @@ def option_meant(typed: str, command: Any, program: Any) -> str:
     having = [name for name, other in program.commands.items() if any(typed in each.opts for each in other.params)]
     also = {name: f"{each.metavar} {' '.join(str(each.help).split()[:FIRST])}" for name, each in options.items()}
     outputs = [each.opts[0] for each in command.params if str(each.metavar or "").startswith("OUT")]
-    near = nearest_words(word, [*options, *(OUTPUTS if outputs else ())], also=also)
+    near = proposals(word, [*options, *(OUTPUTS if outputs else ())], cutoff=0.6, also=also)
     if near and near[0] in OUTPUTS and near[0] not in options:
         return f"; what it writes is named by {', '.join(outputs)}"
     if having:
