@@ -40,7 +40,7 @@ def unknown_command(word: str, commands: Iterable[str]) -> str:
     return f"did you mean {' or '.join(near)}?" if near else "thermicon --help lists all"
 
 
-OUTPUTS = ("o", "output", "csv", "save", "table")
+OUTPUTS = ("o", "output", "csv", "format", "save", "table")
 """What people write for an option that names a file to write."""
 FIRST = 4
 """Words of an option's help that say what it is; the others say more than that."""
@@ -51,9 +51,10 @@ def option_meant(typed: str, command: Any, program: Any) -> str:
 
     `command` and `program` are as typer makes them.
     """
-    word, options = typed.lstrip("-"), {name[2:]: each for each in command.params for name in each.opts if name[2:]}
-    if "." in word and "set" in options:
-        return f"; did you mean --set {word}=VALUE?"
+    from thermicon.circuit.rig.rigfile import rig_keys
+
+    word, known = typed.lstrip("-"), [(name, each) for each in command.params for name in each.opts]
+    options = {name[2:]: each for name, each in known if name.startswith("--")}
     having = [name for name, other in program.commands.items() if any(typed in each.opts for each in other.params)]
     also = {name: f"{each.metavar} {' '.join(str(each.help).split()[:FIRST])}" for name, each in options.items()}
     outputs = [each.opts[0] for each in command.params if str(each.metavar or "").startswith("OUT")]
@@ -62,7 +63,10 @@ def option_meant(typed: str, command: Any, program: Any) -> str:
         return f"; what it writes is named by {', '.join(outputs)}"
     if having:
         return f"; it belongs to {', '.join(having)}"
-    return f"; did you mean --{near[0]}?" if near else ""
+    if near:
+        return f"; did you mean --{near[0]}?"
+    keys = proposals(word, rig_keys(), cutoff=0.8) if "set" in options else []
+    return f"; did you mean --set {keys[0]}=VALUE?" if keys else ""
 
 
 def in_three_lines(error: Any) -> None:

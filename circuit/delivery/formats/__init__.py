@@ -22,7 +22,7 @@ OTHER_WORDS = {
     "setpoint-csv": "controller pid meerstetter",
     "tdms": "ni labview nidaqmx daqmx",
     "wav": "audio sound",
-    "c-array": "arduino esp32 teensy pico stm32 pwm c h",
+    "c-array": "arduino esp32 teensy pico stm32 pwm",
     "tcs2-serial": "tcs tcs2 qst thermode",
     "psychopy": "python py",
 }
