@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import sys
+import tomllib
 from collections.abc import Sequence
+from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +14,7 @@ from .messages import VERBOSE, fail, note, noted, usage
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
+    from thermicon.icons import Icon, IconSet
     from thermicon.perception.observer.observer_model import ObserverModel
 
 DEFAULT_RIG = "thenar"
@@ -72,6 +75,31 @@ def _is_new(text: str) -> bool:
         told.parent.mkdir(parents=True, exist_ok=True)
         told.touch()
     return True
+
+
+def site_warnings(file: str, icons: IconSet | Icon, rig: Rig) -> tuple[str, ...]:
+    """Warnings of a set for another site than the rig's."""
+    if icons.context.site in (None, rig.site):
+        return ()
+    site = icons.context.site
+    return (f"{file} is for the site {site}, the rig {rig.name} is for {rig.site}{site_meant(site)}",)
+
+
+def site_meant(site: str | None) -> str:
+    """Which site is meant by one that neither a shipped rig nor published data know; empty for a known one."""
+    from thermicon.base.words.near_words import proposals
+
+    shipped = (resources.files("thermicon.circuit") / "rigs").iterdir()
+    rigs = {tomllib.loads(rig.read_text("utf-8"))["skin"]["site"] for rig in shipped}
+    if site is None or site in rigs:
+        return ""
+    from thermicon.perception.sensation.coverage import load_coverage, nearest_site, outside_site
+
+    if not outside_site(site.replace("-", " ")):
+        return ""
+    known = sorted({*rigs, *(str(record.site) for record in load_coverage().select("site"))})
+    near = proposals(site, known, cutoff=0.75) or list(filter(None, nearest_site(site)[:1]))
+    return f"; did you mean site {near[0]}?" if near else f"; known: {', '.join(known)}"
 
 
 def load_observer(file: Path | None, rig: Rig | None = None, needs_draws: str = "") -> ObserverModel:

@@ -7,7 +7,7 @@ from types import TracebackType
 INTERRUPTED = 130
 BAD_INPUT = 1
 COMMANDS = ("thermicon", "thermicon.exe", "thermicon-script.py")
-MODULES = ("thermicon.notebooks", "thermicon.notebooks.cli.main")
+MODULES = ("thermicon", "thermicon.notebooks.cli.main")
 
 
 def guard() -> None:

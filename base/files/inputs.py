@@ -95,7 +95,9 @@ def named_text(source: str | Path, names: Sequence[str], what: str, error: type[
     if named or (path.exists() and not (path.is_dir() and str(source) in names)):
         return read_text(path, f"{what} file", 1, error), str(path)
     if str(source) not in names:
-        hint = did_you_mean(path.stem, names, beside="" if path.stem in names else beside(path, ".toml"))
+        shipped = {name: tomllib.loads(shipped_text(f"{what}s/{name}.toml")) for name in names}
+        also = {name: f"{table['title']} {table.get('note', '')}" for name, table in shipped.items()}
+        hint = did_you_mean(path.stem, names, 3, "" if path.stem in names else beside(path, ".toml"), also)
         raise error(f"{source}: no such {what}; {hint}")
     return shipped_text(f"{what}s/{source}.toml"), f"{what} {source}"
 

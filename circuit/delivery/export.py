@@ -39,7 +39,7 @@ class Felt(Protocol):
         """Plain data for the sidecar."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Export:
     """The result of `export`.
 

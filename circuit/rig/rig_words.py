@@ -12,13 +12,13 @@ from thermicon.base.files.inputs import shipped_names
 from thermicon.base.files.records import shipped_records
 from thermicon.base.words.number_text import signed
 
-from .faults import Unusual, unit_of, unusual
+from .faults import Unusual, unusual
 from .module import Extraction
 from .modules import build_of, module_names
 from .rigfile import Thermode
 from .settings import changed
-from .skin import STRATUM_CORNEUM
 from .uncertainty import tightened
+from .usual import unusual_values
 
 if TYPE_CHECKING:
     from .parts import Contact
@@ -82,39 +82,11 @@ def _thermode(thermode: Thermode) -> str:
     )
 
 
-USUAL = {
-    "contact.area_cm2": (0.15, 200.0),
-    "driver.transconductance_A_per_V": (0.005, 10.0),
-    "skin.layer.thickness_mm of the stratum corneum": (0.005, 2.0),
-    "skin.cold_receptor_mm": (0.03, 3.0),
-    "skin.warm_receptor_mm": (0.03, 3.0),
-}
-"""Between which values a key usually lies: from the smallest module to two hands, from a bench source to a driver for
-large modules, from the thinnest facial skin to a heel, and within the dermis; all are choices of this project."""
-
-
 @lru_cache(maxsize=512)
 def rig_warnings(rig: Rig) -> tuple[Unusual, ...]:
     """Return everything unusual: heat loss, blood, loosened limits, origin of the module's numbers."""
     pump = () if rig.pump is None else (*_driver(rig), *rig.pump.origin.warnings, *_module(rig))
-    return (*_skin(rig), *_limits(rig), *pump, *_site(rig), *_slips(rig))
-
-
-def _slips(rig: Rig) -> Iterator[Unusual]:
-    """Values that are possible, but so unusual that a unit may have been mistaken."""
-    skin = rig.skin
-    values = {"contact.area_cm2": 1e4 * rig.contact.area_m2}
-    if rig.pump is not None:
-        values["driver.transconductance_A_per_V"] = rig.driver.transconductance_A_per_V
-    if skin.corneum_m:
-        values["skin.layer.thickness_mm of the stratum corneum"] = 1e3 * skin.corneum_m
-    above_m = skin.corneum_m if skin.depth_from == STRATUM_CORNEUM else 0.0
-    for name, depth_m in (("cold", skin.cold_receptor_m), ("warm", skin.warm_receptor_m)):
-        values[f"skin.{name}_receptor_mm"] = 1e3 * (depth_m - above_m)
-    for key, value in values.items():
-        low, high = USUAL[key]
-        if not low <= value <= high:
-            yield unusual("slip", key=key, value=value, unit=unit_of(key.split(" ")[0]), low=low, high=high)
+    return (*_skin(rig), *_limits(rig), *pump, *_site(rig), *unusual_values(json.loads(rig.document)))
 
 
 def _skin(rig: Rig) -> Iterator[Unusual]:

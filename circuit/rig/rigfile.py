@@ -8,7 +8,7 @@ from pydantic import BaseModel, Field, ValidationError
 
 from thermicon.base.checks.arguments import InputError as InputError
 from thermicon.base.files.inputs import LONGEST_NAME, Place, key_faults, read_toml
-from thermicon.base.words.near_words import did_you_mean, nearest_words
+from thermicon.base.words.near_words import did_you_mean, proposals
 
 from . import faults as kinds
 from .faults import PARAMETERS, KeyTable, sentence, unit_of
@@ -290,6 +290,6 @@ def _nearest(parts: Place) -> str:
     known = set(rig_keys()) | {known.rpartition(".")[0] for known in rig_keys() if "." in known}
     place, dot, name = key.rpartition(".")
     beside = [other.rpartition(".")[2] for other in known if other.rpartition(".")[0] == place]
-    if close := nearest_words(name, beside, 2):
+    if close := proposals(name, beside, 2, 0.6):
         return f"did you mean {' or '.join(place + dot + other for other in close)}?"
     return did_you_mean(key, known if dot and place not in known else beside)

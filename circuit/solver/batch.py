@@ -26,7 +26,7 @@ TRACKINGS = ("replay", "display", "ideal")
 USUAL = ("skin_C", "cold_receptor_C", "warm_receptor_C")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Batch:
     """Traces of many cues on many rigs: `time_s` (rows,), `values` (probes, rigs, icons, rows)."""
 

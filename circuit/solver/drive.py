@@ -35,7 +35,7 @@ class DriveError(InputError):
 
 
 @checked
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Drive:
     """A current against time.
 

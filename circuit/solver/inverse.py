@@ -21,7 +21,7 @@ LIMITS = ("", "current limit", "lower current limit", "compliance voltage", "cur
 """What limited a current, by the code of the kernel."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Design:
     """The current designed for a cue on a rig; before it, `rest_A` holds the steady state `start_C` (°C)."""
 

@@ -14,6 +14,7 @@ from table_text import markdown
 from thermicon.circuit.delivery.devicefile import DeviceTable, quantities, units_of
 from thermicon.circuit.rig.modules import FIGURES, module_rows
 from thermicon.circuit.rig.rigfile import RigTable
+from thermicon.circuit.rig.usual import usual_values
 from thermicon.notebooks.study.study_file import TABLES as STUDY_TABLES
 from thermicon.notebooks.study.study_file import Study
 
@@ -54,6 +55,16 @@ def _table(model: type[BaseModel]) -> str:
     """Every key of a file with its values and its default."""
     schema = model.model_json_schema()
     return markdown(("key", "values", "default"), _rows(schema, schema, ""))
+
+
+def rig_keys_table() -> str:
+    """Every key of a rig file with its values, its default, and what is usual and why."""
+    schema, usual = RigTable.model_json_schema(), usual_values()
+    rows = []
+    for key, values, default in _rows(schema, schema, ""):
+        low, high, source = usual.get(key.strip("`"), (None, None, ""))
+        rows.append((key, values, default, "" if low is None else f"{low:g} to {high:g} ({source})"))
+    return markdown(("key", "values", "default", "usual"), rows)
 
 
 def _rows(table: dict[str, Any], schema: dict[str, Any], prefix: str) -> Iterator[tuple[str, str, str]]:
@@ -101,7 +112,7 @@ def default_of(value: object) -> str:
 
 KEY_TABLES = {
     "study keys": study_keys_table,
-    "rig keys": partial(_table, RigTable),
+    "rig keys": rig_keys_table,
     "modules": modules_table,
     "device keys": partial(_table, DeviceTable),
     "device quantities": device_quantities_table,

@@ -6,7 +6,7 @@ from fractions import Fraction
 from importlib import resources
 from typing import get_args
 
-from thermicon.base.words.near_words import nearest_words
+from thermicon.base.words.near_words import nearest_words, proposals
 
 from .statements import Shape
 from .units import UNITS, Control, Kind, decimal_text, exact_number
@@ -71,7 +71,7 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
     alias = WORD_ALIASES.get(plain)
     if alias in options:
         return alias
-    return next(iter(nearest_words(plain, options)), None)
+    return next(iter(proposals(plain, options, cutoff=0.6)), None)
 
 
 def nearest_unit(word: str, kind: Kind) -> str | None:

@@ -14,8 +14,9 @@ from thermicon.base.words.number_text import number, span
 from thermicon.perception.criteria import MOST_ICONS
 
 from ..files.outputs import check_output
+from ..loading import site_meant
 from ..messages import MissingArgument, fail, note, usage
-from .options import command_text, flag, opt, site_meant
+from .options import command_text, flag, opt
 
 if TYPE_CHECKING:
     from thermicon.icons import IconSet
@@ -99,8 +100,8 @@ def check(files: Sequence[str]) -> None:
             icons = read_cue(file)
             # Families expand lazily, so an icon's own errors may show only here.
             lines.append(f"{Path(file).name}: {summary(icons)}")
-            if meant := site_meant(icons.context.site):
-                note(f"warning: {file}: no rig is for the site {icons.context.site}{meant}")
+            if icons.context.site and (meant := site_meant(icons.context.site)):
+                note(f"warning: {file}: no rig and no data are for the site {icons.context.site}{meant}")
         except CueErrors as errors:
             problems.append(str(errors))
     if problems:

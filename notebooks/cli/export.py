@@ -75,7 +75,10 @@ def export_command(
     if file is None:
         raise MissingArgument("argument 'FILE'")
     if to is None:
-        raise MissingArgument("option '--to'")
+        from thermicon.circuit.delivery.formats import format_names
+
+        names = ", ".join(format_names())
+        raise MissingArgument(f"option '--to': {names}; thermicon list formats says what takes each")
     if folder is None:
         raise MissingArgument("option '-o' / '--output'")
     from thermicon.circuit import export

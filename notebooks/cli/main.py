@@ -17,7 +17,7 @@ from typer.core import TyperGroup
 
 from ..messages import INTERRUPTED, be_quiet, fail, interrupted, into_nowhere, is_ours
 from .options import flat
-from .other_words import answer_to, in_three_lines, outputs_of
+from .other_words import in_three_lines, option_meant, unknown_command
 
 WRITE, SIMULATE, PREDICT = "Write icons", "Simulate a rig", "Predict perception"
 PLAY, NOTEBOOKS, INSTALLATION = "Play on hardware", "Notebooks", "Installation"
@@ -53,6 +53,21 @@ NUMBERS = {
 BOUNDS = ("greater_than_equal", "less_than_equal")
 
 
+EVERYWHERE = ("-q", "--quiet", "-v", "--verbose")
+"""Options of the program that may stand behind a command too."""
+
+
+def in_front(words: Sequence[str]) -> list[str]:
+    """Return a command line with the options of the program in front; what stands behind -- stays.
+
+    >>> in_front(["rank", "-q", "two.cue", "--", "-v"])
+    ['-q', 'rank', 'two.cue', '--', '-v']
+    """
+    end = words.index("--") if "--" in words else len(words)
+    front = [word for word in words[:end] if word in EVERYWHERE]
+    return [*front, *(word for word in words[:end] if word not in EVERYWHERE), *words[end:]]
+
+
 class Commands(TyperGroup):
     """A group of commands that ends with a message and an exit code, never with a traceback for a wrong input."""
 
@@ -80,15 +95,19 @@ class Commands(TyperGroup):
             in_three_lines(error)
             raise
 
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Read -q and -v, which may stand anywhere; a line without any other word asks for help."""
+        return list(super().parse_args(ctx, in_front(args) if {*args} - {*EVERYWHERE} else ["--help"]))
+
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Find the command that a line begins with; ``help NAME`` is its help, other words are answered with theirs."""
         if args[0] == "help" and args[1:2]:
-            return super().resolve_command(ctx, [args[1], "--help"])
+            return self.resolve_command(ctx, [args[1], "--help"])
         if args[0] == "help":
             typer.echo(ctx.get_help())
             raise typer.Exit
-        if args[0] not in COMMANDS and (line := answer_to(args[0])):
-            ctx.fail(f"No such command '{args[0]}'; try: {line}")
+        if args[0] not in COMMANDS and not args[0].startswith("-"):
+            ctx.fail(f"No such command '{args[0]}'; {unknown_command(args[0], COMMANDS)}")
         return super().resolve_command(ctx, args)
 
     def invoke(self, ctx: Any) -> Any:
@@ -116,9 +135,9 @@ class Commands(TyperGroup):
             if isinstance(error, RuntimeError) and "Symlink loop" in str(error):  # pathlib's words, before 3.13
                 fail(f"a path cannot be followed because its links form a circle: {str(error).partition('from ')[2]}")
             in_three_lines(error)
-            if getattr(error, "option_name", None) in ("-o", "--output") and type(error).__name__ == "NoSuchOption":
+            if type(error).__name__ == "NoSuchOption":
                 error.possibilities = ()  # type: ignore[attr-defined]
-                error.message += outputs_of(error.ctx.command)  # type: ignore[attr-defined]
+                error.message += option_meant(error.option_name, error.ctx.command, typer.main.get_command(program()))  # type: ignore[attr-defined]
                 raise
             if isinstance(error, typer.BadParameter):
                 reworded(error)
@@ -136,7 +155,7 @@ def reworded(error: Any) -> None:
     `error` is a bad parameter of the command line; others stay as they are.
     """
     from thermicon.base.files.inputs import quoted
-    from thermicon.base.words.near_words import nearest_words
+    from thermicon.base.words.near_words import proposals
 
     param, faults = getattr(error, "param", None), getattr(error.__cause__, "errors", None)
     if param is None or faults is None:
@@ -150,7 +169,7 @@ def reworded(error: Any) -> None:
     else:
         wrong, joint, choices = error.message.removeprefix("Value error, ").removesuffix(".").partition(" is not one ")
         choices = choices.replace("'", "")
-        near = nearest_words(text, choices.removeprefix("of ").split(", "), cutoff=0.55)
+        near = proposals(text, choices.removeprefix("of ").split(", "))
         error.message = wrong + joint + choices + (f"; did you mean {near[0]}?" if near else "")
 
 
@@ -186,9 +205,9 @@ def program(words: Sequence[str] = ()) -> typer.Typer:
         callback=thermicon,
         rich_markup_mode=None,
         pretty_exceptions_enable=False,
-        no_args_is_help=True,
     )
-    for name in words[:1] if words and words[0] in COMMANDS else COMMANDS:
+    first = next((word for word in words if word not in EVERYWHERE), "")
+    for name in [first] if first in COMMANDS else COMMANDS:
         module, job = COMMANDS[name]
         command = getattr(import_module(f".{module}", __package__), f"{name}_command")
         made.command(name, rich_help_panel=job)(flat(command))

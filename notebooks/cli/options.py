@@ -10,19 +10,17 @@ import inspect
 import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import Field, dataclass, fields, is_dataclass, replace
-from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
 
 import typer
 
 from thermicon.base.files.atomic import complete_or_absent
-from thermicon.base.words.near_words import nearest_words
 from thermicon.perception.criteria import MOST_ICONS
 
 from ..figures.style import SCREEN, Look, read_width_mm
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output
-from ..loading import check_changes, check_draws, load_observer, load_rig
+from ..loading import check_changes, check_draws, load_observer, load_rig, site_warnings
 from ..messages import note, usage
 
 if TYPE_CHECKING:
@@ -321,26 +319,13 @@ def theirs_of(columns: Sequence[str] | None) -> dict[str, str]:
     return {name.strip(): own.strip() for name, _, own in pairs}
 
 
-def site_warnings(file: str, icons: IconSet | Icon, rig: Rig) -> tuple[str, ...]:
-    """Warnings of a set for another site than the rig's."""
-    if icons.context.site in (None, rig.site):
-        return ()
-    site = icons.context.site
-    return (f"{file} is for the site {site}, the rig {rig.name} is for {rig.site}{site_meant(site)}",)
-
-
-def site_meant(site: str | None) -> str:
-    """Which site of a shipped rig is meant by one that no rig has; empty where none is alike."""
-    known = [each.name.split(".")[0] for each in (resources.files("thermicon.circuit") / "rigs").iterdir()]
-    near = [] if site is None or site in known else nearest_words(site.lower(), known, cutoff=0.75)
-    return f"; did you mean site {near[0]}?" if near else ""
-
-
 def pick(icons: IconSet, name: str | None, most: int = MOST_ICONS) -> list[Icon]:
     """Return the icon of this name, or all of them; an unknown name is an error that lists the nearest.
 
     More than ``most`` icons, as a family may have, are a usage error.
     """
+    if name is not None and "," in name:
+        raise usage(f"takes one icon, not {name}; leave it out for all, or give the command for each", "--icon")
     if name is not None:
         return [icons[name]]
     if len(icons) > most:

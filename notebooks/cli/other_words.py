@@ -1,11 +1,14 @@
-"""Answers to words that are no commands and the short form of usage errors."""
+"""Answers to words that are neither commands nor options and the short form of usage errors."""
 
 import tomllib
-from importlib import resources
+from collections.abc import Iterable
+from importlib import import_module, resources
 from pathlib import Path
 from typing import Any
 
 import typer
+
+from thermicon.base.words.near_words import proposals
 
 
 def answer_to(word: str) -> str:
@@ -22,13 +25,48 @@ def answer_to(word: str) -> str:
     return next((f"thermicon {line}" for words, line in said.items() if word.casefold() in words.split()), "")
 
 
-def outputs_of(command: Any) -> str:
-    """Which options of a command name what it writes, for who asks for another.
+def unknown_command(word: str, commands: Iterable[str]) -> str:
+    """What to do about a word that is no command: a command line, a name of Python, or the nearest commands.
 
-    `command` is as typer makes it.
+    >>> unknown_command("netlist", ["list"]), unknown_command("ranks", ["rank", "list"])
+    ('in Python it is thermicon.circuit.netlist', 'did you mean rank?')
     """
-    named = [each.opts[0] for each in command.params if str(each.metavar or "").startswith("OUT")]
-    return f"; what it writes is named by {', '.join(named)}" if named else ""
+    if line := answer_to(word):
+        return f"try: {line}"
+    for package in ("icons", "circuit", "perception", "notebooks"):
+        if word in import_module(f"thermicon.{package}").__all__:
+            return f"in Python it is thermicon.{package}.{word}"
+    near = proposals(word, commands, 2)
+    return f"did you mean {' or '.join(near)}?" if near else "thermicon --help lists all"
+
+
+OUTPUTS = ("o", "output", "csv", "format", "save", "table")
+"""What people write for an option that names a file to write."""
+FIRST = 4
+"""Words of an option's help that say what it is; the others say more than that."""
+
+
+def option_meant(typed: str, command: Any, program: Any) -> str:
+    """What was meant by an option that a command does not have; empty where nothing is like it.
+
+    `command` and `program` are as typer makes them.
+    """
+    from thermicon.circuit.rig.rigfile import rig_keys
+
+    word, known = typed.lstrip("-"), [(name, each) for each in command.params for name in each.opts]
+    options = {name[2:]: each for name, each in known if name.startswith("--")}
+    having = [name for name, other in program.commands.items() if any(typed in each.opts for each in other.params)]
+    also = {name: f"{each.metavar} {' '.join(str(each.help).split()[:FIRST])}" for name, each in options.items()}
+    outputs = [each.opts[0] for each in command.params if str(each.metavar or "").startswith("OUT")]
+    near = proposals(word, [*options, *(OUTPUTS if outputs else ())], cutoff=0.6, also=also)
+    if near and near[0] in OUTPUTS and near[0] not in options:
+        return f"; what it writes is named by {', '.join(outputs)}"
+    if having:
+        return f"; it belongs to {', '.join(having)}"
+    if near:
+        return f"; did you mean --{near[0]}?"
+    keys = proposals(word, rig_keys(), cutoff=0.8) if "set" in options else []
+    return f"; did you mean --set {keys[0]}=VALUE?" if keys else ""
 
 
 def in_three_lines(error: Any) -> None:

@@ -14,7 +14,7 @@ import typer
 from thermicon.perception.criteria import MOST_ICONS
 
 from ..files.outputs import STDOUT, check_output, check_separate
-from ..loading import check_draws
+from ..loading import check_draws, site_warnings
 from ..messages import fail, note, progress_bar, usage
 from ..report.following import after_ranking
 from ..report.rank_report import doubt_report, rank_report, rules_report
@@ -34,7 +34,6 @@ from .options import (
     opt,
     out,
     read_set,
-    site_warnings,
     write_text,
 )
 

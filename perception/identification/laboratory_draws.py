@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -174,6 +174,22 @@ SAMPLES, LEAST, NAMED = 512, 128, 8192
 """Presentations of an icon to a person: fewer, but at least 128, where more icons make up for it."""
 
 
+@dataclass(frozen=True)
+class TakingPart:
+    """Which constants take part in how a set is named, with what computes it."""
+
+    compute: Callable[[], NDArray[np.bool_]]
+
+    @cached_property
+    def acting(self) -> NDArray[np.bool_]:
+        """One for each of (constants,), kept once it was asked for."""
+        return self.compute()
+
+    def __call__(self) -> NDArray[np.bool_]:
+        """See `acting`."""
+        return self.acting
+
+
 @dataclass(frozen=True, slots=True)
 class LaboratoryDraws:
     """Predictions of a set by every draw: what `sensitivity` reads and intervals are made of.
@@ -237,7 +253,7 @@ def laboratory_draws(
         if step is not None:
             step()
     each = (np.stack(scores) for scores in zip(*found, strict=True))
-    acting = cache(partial(_acting, laboratories, played(0), pairs[0], min(count, FEW), seed, task))
+    acting = TakingPart(partial(_acting, laboratories, played(0), pairs[0], min(count, FEW), seed, task))
     return LaboratoryDraws(laboratories.names, laboratories.values, acting, *each)
 
 

@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 from thermicon.circuit import Rig
 from thermicon.notebooks.cli.main import app
 
+posix = pytest.mark.skipif(sys.platform == "win32", reason="signals, pipes and paths work differently there")
 TWO_ICONS = """cue 1
 
 set two "Two for a test" {

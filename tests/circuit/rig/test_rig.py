@@ -10,9 +10,11 @@ import pytest
 from tests.builders import messages
 from thermicon.circuit import Drive, Rig, simulate_current
 from thermicon.circuit.rig.corner import perturbed
+from thermicon.circuit.rig.modules import module_names
 from thermicon.circuit.rig.rig import rig_names
 from thermicon.circuit.rig.rig_words import STEP_S
-from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.rig.rigfile import RigError, rig_keys
+from thermicon.circuit.rig.usual import unusual_values, usual_values
 from thermicon.circuit.solver.kernel import LONGEST_STEP_S
 
 THENAR = Rig.load("thenar")
@@ -189,24 +191,53 @@ def test_a_plate_that_is_warned_of_is_off_in_a_drive_and_not_with_short_steps() 
         assert least < np.abs(display_C(rig, 100.0) - display_C(rig, 5000.0)).max() < most
 
 
+def told_of(key: str, value: float) -> list[str]:
+    """What is said of a document that holds this number alone, in a layer of the name that the key has."""
+    general, _, layer = key.partition(" of the ")
+    inner: object = value
+    for part in reversed(general.split(".")):
+        if part == "0":
+            inner = [inner | {"name": layer or "dermis"} if isinstance(inner, dict) else inner]
+        else:
+            inner = {part: inner}
+    assert isinstance(inner, dict)
+    return [each.text for each in unusual_values(inner)]
+
+
+@pytest.mark.parametrize("key", usual_values())
+def test_a_number_is_told_just_outside_of_what_is_usual_and_not_just_inside(key: str) -> None:
+    low, high, source = usual_values()[key]
+    assert key.partition(" of ")[0] in rig_keys() and (" " in source)
+    slack = 1e-6 * (high - low)
+    assert not told_of(key, low) + told_of(key, high)
+    for value in (low - slack, high + slack):
+        (told,) = told_of(key, value)
+        assert told.startswith(key.partition(" of ")[0]) and f"usual are {low:g} to {high:g} " in told
+
+
 @pytest.mark.parametrize(
-    ("key", "slip", "fine"),
+    ("key", "slip", "likely"),
     [
-        ("contact.area_cm2", 0.09, 0.2),
-        ("driver.transconductance_A_per_V", 150.0, 9.0),
-        ("skin.warm_receptor_mm", 10.0, 2.5),
-        ("skin.cold_receptor_mm", 0.02, 0.05),
+        ("heat_sink.temperature_C", 104.0, "104 looks like °F, 40 °C"),
+        ("contact.resistance_m2K_per_W", 0.54, "0.54 looks like m²·K/kW, 0.00054 m²·K/W"),
+        ("contact.area_cm2", 900.0, "900 looks like mm², 9 cm²"),
+        ("heat_sink.resistance_K_per_W", 0.0002, "0.0002 looks like K/mW, 0.2 K/W"),
+        ("driver.current_limit_A", 0.0015, "check its unit"),
+        ("module.hot_plate_J_per_K", 2600.0, "2600 looks like mJ/K, 2.6 J/K"),
+        ("ambient.film_W_per_m2K", 0.01, "0.01 looks like kW/(m²·K), 10 W/(m²·K)"),
+        ("blood.density_kg_per_m3", 1.06, "1.06 looks like g/cm³, 1060 kg/m³"),
+        ("skin.layer.0.thickness_mm", 0.00017, "0.00017 looks like m, 0.17 mm"),
+        ("skin.layer.1.perfusion_per_s", 0.075, "0.075 looks like 1/min, 0.00125 1/s"),
+        ("skin.cold_receptor_mm", 0.02, "0.02 looks like cm, 0.2 mm"),
+        ("skin.warm_receptor_mm", 10.0, "check its unit"),
     ],
 )
-def test_a_value_that_is_so_unusual_that_its_unit_may_be_mistaken_is_told(key: str, slip: float, fine: float) -> None:
-    thenar = Rig.load("thenar")
-    (told,) = [text for text in thenar.with_(**{key: slip}).warnings if "check its unit" in text]
-    assert told.startswith(f"{key} = {slip:g} ")
-    assert not [text for text in thenar.with_(**{key: fine}).warnings if "check its unit" in text]
+def test_a_number_in_another_unit_is_taken_and_told_with_that_unit(key: str, slip: float, likely: str) -> None:
+    told = [text for text in THENAR.with_(**{key: slip}).warnings if "usual are" in text]
+    assert len(told) == 1 and told[0].startswith(key) and told[0].endswith(f"; {likely}")
 
 
-def test_a_stratum_corneum_in_metres_is_told() -> None:
-    document = json.loads(Rig.load("thenar").document)
-    document["skin"]["layer"][0]["thickness_mm"] = 0.00017
-    thin = Rig.load("thenar").with_(skin={"layer": document["skin"]["layer"]})
-    assert any("of the stratum corneum = 0.00017 mm: usual are 0.005 to 2 mm" in text for text in thin.warnings)
+def test_no_number_of_a_shipped_rig_or_module_is_unusual() -> None:
+    rigs = [Rig.load(name) for name in rig_names()]
+    rigs += [THENAR.with_(**{"module.name": name}) for name in module_names()]
+    assert len(rigs) > 10 and not [text for rig in rigs for text in rig.warnings if "usual are" in text]

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.builders import messages, missing
-from tests.notebooks.conftest import Cli
+from tests.notebooks.conftest import Cli, posix
 
 SAID = messages(__file__)
 FILES: dict[str, bytes] = {name: text.encode() for name, text in SAID["files"].items()} | {
@@ -47,8 +47,21 @@ def test_a_command_says_what_it_must_and_leaves_nothing(
 
 
 def test_a_command_line_alone_shows_how_it_is_used(cli: Cli) -> None:
-    said = cli()
-    assert (said.exit_code, "Usage" in said.stdout + said.stderr) == (2, True)
+    for line in ((), ("-q",)):
+        said = cli(*line)
+        assert (said.exit_code, said.stderr) == (0, "") and said.stdout == cli("--help").stdout
+
+
+def test_a_site_that_data_know_is_not_told(cli: Cli, two: Path) -> None:
+    (two.parent / "wrist.cue").write_bytes(FILES["wrist.cue"])
+    assert cli("check", two.parent / "wrist.cue").stderr.startswith("Next: ")
+
+
+@posix
+def test_a_file_is_proposed_by_what_its_name_begins_with_and_where_linux_has_it(cli: Cli, two: Path) -> None:
+    (two.parent / "note.cue.txt").write_bytes(FILES["note.cue.txt"])
+    assert f"did you mean {two.parent / 'note.cue.txt'}?" in cli("rank", two.parent / "note.cue").stderr
+    assert "did you mean /mnt/c/Users/me/x.cue?" in cli("check", r"C:\Users\me\x.cue").stderr
 
 
 @pytest.mark.parametrize(

@@ -9,14 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.notebooks.conftest import Cli
+from tests.notebooks.conftest import Cli, posix
 from thermicon.notebooks.cli import doctor
 from thermicon.notebooks.cli.main import COMMANDS, program
 
-posix = pytest.mark.skipif(sys.platform == "win32", reason="signals and pipes work differently there")
 
-
-@pytest.mark.parametrize("start", [("-m", "thermicon.notebooks.cli.main"), ("-P", "-m", "thermicon.notebooks")])
+@pytest.mark.parametrize("start", [("-m", "thermicon.notebooks.cli.main"), ("-P", "-m", "thermicon")])
 def test_the_version(tmp_path: Path, start: tuple[str, ...]) -> None:
     (found,) = entry_points(group="console_scripts", name="thermicon")
     assert found.value == "thermicon.notebooks.cli.main:main"
@@ -26,7 +24,8 @@ def test_the_version(tmp_path: Path, start: tuple[str, ...]) -> None:
 
 def test_a_command_reads_its_own_options_alone() -> None:
     assert [command.name for command in program(["rank"]).registered_commands] == ["rank"]
-    for words in ([], ["--help"], ["chek"], ["-q", "rank"]):
+    assert [command.name for command in program(["-q", "rank"]).registered_commands] == ["rank"]
+    for words in ([], ["--help"], ["chek"], ["-q"]):
         assert len(program(words).registered_commands) == len(COMMANDS) == 15
 
 
@@ -40,6 +39,8 @@ def test_every_command_has_help(cli: Cli, name: str) -> None:
 def test_quiet_is_without_notes_and_with_errors(cli: Cli, two: Path, tmp_path: Path) -> None:
     assert cli("simulate", two, "-o", tmp_path / "t.csv").stderr
     assert cli("-q", "simulate", two, "-o", tmp_path / "t.csv").stderr == ""
+    assert cli("simulate", two, "-o", tmp_path / "t.csv", "--quiet").stderr == ""
+    assert "no such file" in cli("check", "--", "-q").stderr
     assert "no such rig" in cli("-q", "simulate", two, "--rig", "nowhere").stderr
     assert cli("simulate", two, "-o", tmp_path / "t.csv").stderr
 
