@@ -246,7 +246,10 @@ def condition(
     if keep is not None and drawn is not None and not found.unusable:
         _keep(found, keep, drawn)
         kept = replace(crowd, seed=0, observer=drawn)
-        last = f"Predict for this laboratory:\n  {command_text(files[:1], rig, kept, paths=True)}"
+        last = (
+            "Predict for this laboratory (with pairs by chance: only the prediction above knows which were confused):"
+            f"\n  {command_text(files[:1], rig, kept, paths=True)}"
+        )
     if json != STDOUT:
         show(observed_report(found, files, last))
     if keep is not None and found.unusable:

@@ -351,7 +351,7 @@ def _verdict(found: Observed[Namings, Fit]) -> str:
             "than chance does"
         )
     if found.fit.p < DOUBTFUL:
-        return ": the answers are near the limit of what the prediction allows"
+        return ": the answers are near the limit of what the prediction before them allowed"
     return ": the answers are what the prediction allows"
 
 

@@ -80,6 +80,12 @@ def crowd_text(ranking: Ranking | Sensitivity) -> str:
     return f"{crowd} on the {ranking.rig} rig{what_if}"
 
 
+def intervals_text(ranking: Ranking) -> str:
+    """The sentence on what intervals for a laboratory hold; empty where there are none."""
+    found = ranking.new_laboratory
+    return "" if found is None else f"Intervals of a laboratory: {', '.join(found.covers)}. "
+
+
 def caveat(ranking: Ranking) -> str:
     """Return the sentences that state what the numbers rest on and what they are not."""
     memory = "" if ranking.memory == "both" else f", memory: {ranking.memory}"
@@ -87,7 +93,7 @@ def caveat(ranking: Ranking) -> str:
     gap = "" if gap_s is None else f", {gap_s:g} s between icons"
     return (
         f"Predicted for {crowd_text(ranking)} (seed {ranking.seed}, {ranking.tracking} tracking{memory}{gap}). "
-        f"These are predictions of a model, not measurements. {DETECTED}"
+        f"These are predictions of a model, not measurements. {intervals_text(ranking)}{DETECTED}"
     )
 
 
@@ -129,14 +135,16 @@ def memory_points(ranking: Ranking) -> Iterator[str]:
     """Yield what each form of memory predicts, and the change of order; nothing for one icon or one form."""
     if not ranking.pairs or len(ranking.by_form) == 1:
         return
-    shares = ", ".join(f"{percent(share)} with {form}" for form, share in ranking.by_form.items())
+    shares = ", ".join(f"{percent(share)} named with {form}" for form, share in ranking.by_form.items())
     changes = ranking.form_changes
     if not changes:
         order = "the same order"
     else:
         more = f" ({count_of(len(changes) - 1, 'more change')} of order)" if len(changes) > 1 else ""
-        order = f"with the second, {changes[0][1]} ranks before {changes[0][0]}{more}"
-    yield f"form of memory: {shares}; {order}; no data settle which of the two is right, and d′ are those of the first"
+        better, worse = changes[0]
+        order = f"{better} ranks before {worse} with the first and after it with the second{more}"
+    known = "as the draws of this laboratory have them" if ranking.own_laboratory else "no data settle which is right"
+    yield f"form of memory: {shares}; {order}; {known}, and d′ are those of the first"
 
 
 def carried_points(ranking: Ranking) -> Iterator[str]:

@@ -10,7 +10,16 @@ from thermicon.base.words.number_text import count_of, number, percent, percent_
 
 from .blocks import Block, Bullets, Cell, Facts, Grid, Heading, Text, grid, printed_unit
 from .choices import choice_lines, goal_lines, laboratory
-from .rank_details import caveat, crowd_text, detail_blocks, edit_text, edits_blocks, outside_lines, trouble_lines
+from .rank_details import (
+    caveat,
+    crowd_text,
+    detail_blocks,
+    edit_text,
+    edits_blocks,
+    intervals_text,
+    outside_lines,
+    trouble_lines,
+)
 
 if TYPE_CHECKING:
     from thermicon.perception import Ranking
@@ -42,17 +51,18 @@ def rank_report(
     """
     ranking, icons = made.ranking, made.ranking.best_first
     notes = [Text(line, "warn") for line in trouble_lines(ranking.icons, cures or {})]
-    notes += [Text(line, "note") for line in outside_lines(icons)]
+    outside = [Text(line, "note") for line in outside_lines(icons)]
     shown = max(1, min(len(cures or {}), 3))
-    if not details and len(notes) > shown:
-        more = count_of(len(notes) - shown, "more note")
-        notes = [*notes[:shown], Text(f"{more}: thermicon rank --details", "warn")]
+    left = len(notes[shown:]) + len(outside[1:])
+    if not details and left:
+        # What no experiment varied stands on the first screen, beside the worst of what cannot be played.
+        more = Text(f"{count_of(left, 'more note')}: thermicon rank --details", "warn")
+        notes, outside = notes[:shown], [*outside[:1], more]
     advice = edit_text(made, ranking.worst) if ranking.worst and not made.ways else ""  # tried, and told so
     chosen = list(choice_lines(made.choice, made.goal)) if made.choice else []
     by = "" if ranking.observer == "shipped" else f", observer {ranking.observer}"
     table = f" The table is about all {len(icons)} icons together." * bool(chosen)
-    held = "" if ranking.new_laboratory is None else f" Intervals: {', '.join(ranking.new_laboratory.covers)}."
-    short = f"Predicted, not measured: {crowd_text(ranking)}{by}.{held}{table}"
+    short = f"Predicted, not measured: {crowd_text(ranking)}{by}. {intervals_text(ranking).strip()}{table}"
     told: list[Block] = [Heading(chosen[0], 3), Bullets(tuple(chosen[1:]))] if chosen else []
     return [
         *([Heading(title, 1)] if title else []),
@@ -62,6 +72,7 @@ def rank_report(
         *told,
         *([] if details else edits_blocks(made)),
         *notes,
+        *outside,
         icon_table(icons, made, None if details else MOST_ROWS),
         *(detail_blocks(made) if details else []),
         Text(caveat(ranking) if details else f"{short} More: {'rank ' * (not following)}--details"),

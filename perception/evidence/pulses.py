@@ -55,7 +55,10 @@ def short_pulses(variable: Variable, people: int, draws: int, seed: int) -> tupl
     every, observer = _shown(None, RANKED, seed), Observer.load(variable=variable)
     felt = respond(every.played(variable), every.crowd, observer, detection=False)
     apart = memory_dprime(felt, MEMORY_FORMS[0], every.crowd.memory, observer, USUAL)
-    chance, said = np.random.default_rng(np.random.SeedSequence([seed, 31])), f"{SETS} sets of {RANKED} people, {RIG}"
+    chance, said = (
+        np.random.default_rng(np.random.SeedSequence([seed, 31])),
+        f"{SETS} sets of {RANKED} people, {RIG}, {MEMORY_FORMS[0]}",
+    )
     scores = []
     for _ in range(SETS):
         own = np.sort(chance.choice(len(every.icons), COUNTS[0], replace=False))

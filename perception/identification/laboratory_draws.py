@@ -241,7 +241,7 @@ def laboratory_draws(
     """
     laboratories, count = DrawnLaboratories.of(model, memory, draws, seed), len(persons)
     invited = laboratories.invited(count) if resampled else np.tile(np.arange(count), (draws, 1))
-    pairs, apart_by = pair_scores(len(played(0).names), draws, seed), forms_in(memory)[0]
+    pairs, apart_by = pair_scores(len(played(0).names), draws, seed), next(iter(model.form_shares(memory)))
 
     def one(place: int) -> tuple[Array, ...]:
         laboratory = laboratories.at(place, count)

@@ -16,7 +16,8 @@ from thermicon.base.numbers.arrays import Array
 from thermicon.circuit import Rig
 from thermicon.icons import Icon
 
-from ..observer.channels import FORM, MemoryChoice, forms_in
+from ..observer.channels import FORM, MemoryChoice
+from ..observer.draws import NEGLIGIBLE
 from ..observer.mechanisms.memory import PAIRS
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
@@ -24,6 +25,7 @@ from .depths import rungs
 from .laboratory_draws import (
     EVERY,
     MANY,
+    OFFSETS,
     DrawnLaboratory,
     LaboratoryDraws,
     laboratory_draws,
@@ -69,7 +71,8 @@ class NewLaboratory:
     @property
     def covers(self) -> tuple[str, ...]:
         """What varies between the draws, and is therefore in the intervals."""
-        found, pairs = ["people", "constants", "laboratory"], self.pair_spread
+        found, pairs = ["people", "constants"], self.pair_spread
+        found += ["laboratory"] * bool(np.ptp(self._column(OFFSETS[0])) > NEGLIGIBLE)
         found += ["form of memory"] * bool(np.ptp(self._column(FORM)))
         return (*found, *["pairs of icons"] * (pairs is not None and len(self.detected) > 1))
 
@@ -164,12 +167,14 @@ def new_laboratory(
         lambda _: few, persons, memory, own, draws=draws, seed=seed, task=task, resampled=True, step=step
     )
     # Means over all the people of the nominal observer: their sample belongs to the draw.
-    forms, everybody, none = forms_in(memory), np.arange(len(persons)), np.zeros((count, count))
+    shares, everybody, none = own.form_shares(memory), np.arange(len(persons)), np.zeros((count, count))
+    forms = list(shares)
     average = replace(own.nominal, pair_spread=0.0)
     by_form = [
         scored(few, DrawnLaboratory(average, persons, form), forms[0], none, seed, task, everybody) for form in forms
     ]
-    centre = [np.mean(scores, axis=0) for scores in zip(*by_form, strict=True)]
+    weights = list(shares.values())
+    centre = [np.average(scores, axis=0, weights=weights) for scores in zip(*by_form, strict=True)]
     tops = (1.0, math.log2(count), 1.0, math.inf, math.inf, 1.0)
     shifts = {name: getattr(predicted, name) - own for name, own in zip(Nominal.__slots__, centre[:7], strict=True)}
     moved: dict[str, Any] = {}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from thermicon.base.numbers.arrays import Array
 
-from ..observer.channels import MemoryChoice, MemoryForm, forms_in
+from ..observer.channels import MemoryForm
 from ..observer.constants import Both
 from ..observer.observer import Observer
 from ..observer.people import People
@@ -206,37 +206,42 @@ def identify(
 
 @dataclass(frozen=True, slots=True)
 class Identification:
-    """How people name icons: `d_prime` (people, icons, icons) by the first form of memory, confusions by every form."""
+    """How people name icons: `d_prime` (people, icons, icons) by the first form of memory, confusions by every form.
+
+    `shares` are those of laboratories with each form, with which the mean over forms is taken.
+    """
 
     d_prime: Array
     by_form: Mapping[MemoryForm, Confusion]
+    shares: Mapping[MemoryForm, float]
 
     @property
     def probability(self) -> Array:
         """Confusions (people, icons, icons), the mean over forms."""
-        return np.asarray(np.mean([each.probability for each in self.by_form.values()], axis=0))
+        return np.asarray(sum(self.shares[form] * each.probability for form, each in self.by_form.items()))
 
     @property
     def bits(self) -> Array:
         """Information (people,), bits: the mean over forms, of which a laboratory has one."""
-        return np.asarray(np.mean([information_bits(each.probability) for each in self.by_form.values()], axis=0))
+        each = ((self.shares[form], information_bits(named.probability)) for form, named in self.by_form.items())
+        return np.asarray(sum(share * bits for share, bits in each))
 
 
-def form_samples(memory: MemoryChoice, icons: int) -> dict[MemoryForm, int]:
+def form_samples(forms: Collection[MemoryForm], icons: int) -> dict[MemoryForm, int]:
     """Trials of an icon for each person, by form; where both count, fewer are named directly."""
-    return {"episodes": SAMPLES, "naming": few_named(icons) if memory == "both" else NAMED_SAMPLES}
+    return {"episodes": SAMPLES, "naming": few_named(icons) if len(forms) > 1 else NAMED_SAMPLES}
 
 
 def identify_by(
     felt: PopulationResponse,
-    memory: MemoryChoice,
+    shares: Mapping[MemoryForm, float],
     crowd: People,
     observer: Observer,
     seed: int,
     first: int = 0,
     task: Task = USUAL,
 ) -> Identification:
-    """The same by every form that counts."""
-    forms, samples = forms_in(memory), form_samples(memory, felt.episodes.counts.shape[1])
+    """The same by every form, of which laboratories have these shares."""
+    forms, samples = list(shares), form_samples(shares, felt.episodes.counts.shape[1])
     found = {form: identify(felt, form, crowd, observer, seed, samples[form], first, task) for form in forms}
-    return Identification(found[forms[0]][0], {form: named for form, (_, named) in found.items()})
+    return Identification(found[forms[0]][0], {form: named for form, (_, named) in found.items()}, shares)

@@ -19,7 +19,7 @@ from thermicon.base.numbers.arrays import Array
 from thermicon.base.words.near_words import did_you_mean
 
 from .channels import FORM as FORM_OF_MEMORY
-from .channels import VARIABLES, Variable, check_variable
+from .channels import MEMORY_FORMS, VARIABLES, Variable, check_variable
 from .constants import ANY, SHARE, objection_to, ranges_of
 from .mechanisms.memory import MEMORY_NAMES
 from .observer import DATA, Observer
@@ -34,7 +34,7 @@ TABLE = "sha256 of the table"
 FIRST_LINE = "# written by thermicon calibrate from inputs "
 LABORATORY_LINE = "# written by thermicon observed from inputs "
 """How the draws of one laboratory begin."""
-CURE = "write it again with python -m thermicon.perception.evidence sample -o FILE"
+CURE = "write it again, by a pilot with its answers or python -m thermicon.perception.evidence sample -o FILE"
 KEEP_AGAIN = "keep it again, by a pilot with its answers"
 CONSTANTS = DATA / "constants.csv"
 APPROXIMATE = "normal approximation"
@@ -176,7 +176,10 @@ def _numbers(file: str, names: Sequence[str], rows: Sequence[Sequence[str]], fir
             raise RecordError(f"{where}: {len(row)} numbers for {len(names)} constants: {CURE}")
         for place, text in enumerate(row):
             draws[number, place] = _number(text, f"{where}, {names[place]}")
-            if why := objection_to(within[place], float(draws[number, place])):
+            why = objection_to(within[place], float(draws[number, place]))
+            if names[place] == FORM_OF_MEMORY and draws[number, place] not in range(len(MEMORY_FORMS)):
+                why = f"is none of 0 ({MEMORY_FORMS[0]}) and 1 ({MEMORY_FORMS[1]})"
+            if why:
                 raise RecordError(f"{where}, {names[place]}: {text} {why}: {CURE}")
     return draws
 

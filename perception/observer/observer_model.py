@@ -15,7 +15,7 @@ from thermicon.base.checks.arguments import checked
 from thermicon.base.files.inputs import InputError
 from thermicon.base.files.records import RecordError, RecordTable
 
-from .channels import CHANNELS, VARIABLES, MemoryChoice
+from .channels import CHANNELS, VARIABLES, MemoryChoice, MemoryForm, forms_in
 from .draws import PosteriorDraws
 from .observer import DATA, Observer, read_records, variant_records
 from .people import People, draw_people
@@ -70,6 +70,17 @@ class ObserverModel:
         except ValueError as wrong:  # a RecordError says in which file
             raise wrong if isinstance(wrong, RecordError) else RecordError(f"{file.name}: {wrong}") from None
         return cls(file.name, hashlib.sha256(file.read_bytes()).hexdigest(), nominal, records, draws)
+
+    def form_shares(self, memory: MemoryChoice) -> dict[MemoryForm, float]:
+        """The share of laboratories with each form of memory that counts: even, or that of a kept laboratory's draws.
+
+        >>> ObserverModel.load().form_shares("both")
+        {'episodes': 0.5, 'naming': 0.5}
+        """
+        forms, held = forms_in(memory), None if self.posterior is None else self.posterior.forms
+        if held is None or len(forms) == 1:
+            return dict.fromkeys(forms, 1.0 / len(forms))
+        return {form: held.count(form) / len(held) for form in forms if form in held}
 
     def most_draws(self, wanted: int) -> int:
         """As many draws as are wanted, or as many as there are."""

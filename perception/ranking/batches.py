@@ -29,7 +29,7 @@ from ..identification.population import (
 )
 from ..identification.task import USUAL, Task
 from ..kernels.parallel import in_order
-from ..observer.channels import MemoryChoice, MemoryForm, forms_in
+from ..observer.channels import MemoryChoice, MemoryForm
 from ..observer.observer import Observer
 from ..observer.observer_model import Crowd, ObserverModel, Tracking
 from ..observer.people import People
@@ -71,8 +71,9 @@ class BatchResult:
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """Icons on a rig, simulated to one common end (s), for people drawn from a seed, with a form of memory.
+    """Icons on a rig, simulated to one common end (s), for people drawn from a seed, with forms of memory.
 
+    `shares` are those of laboratories with each form that counts; distances and reasons are those of the first.
     `observer` is another than the shipped one. Its draws of the posterior do not travel with the job.
     """
 
@@ -84,6 +85,7 @@ class Job:
     trials: int
     tracking: Tracking | None
     memory: MemoryChoice
+    shares: tuple[tuple[MemoryForm, float], ...]
     task: Task = USUAL
     observer: ObserverModel | None = None
 
@@ -94,7 +96,8 @@ class Job:
         """The job of ranking icons by a crowd."""
         # Batches need no draws, and of the shipped model nothing, which every worker has.
         other = replace(crowd.model, posterior=None) if crowd.model.key else None
-        own = crowd.people, crowd.seed, trials, crowd.tracking, crowd.memory
+        shares = tuple(crowd.model.form_shares(crowd.memory).items())
+        own = crowd.people, crowd.seed, trials, crowd.tracking, crowd.memory, shares
         return cls(tuple(icons), rig, end_s, *own, task, other)
 
     def crowd(self, model: ObserverModel) -> Crowd:
@@ -119,7 +122,7 @@ class Job:
     @property
     def forms(self) -> tuple[MemoryForm, ...]:
         """The forms of memory that count; distances and reasons are those of the first."""
-        return forms_in(self.memory)
+        return tuple(form for form, _ in self.shares)
 
 
 def _respond(job: Job, number: int) -> tuple[People, Observer, PopulationResponse]:
@@ -134,7 +137,7 @@ def run(job: Job, number: int) -> BatchResult:
     """Compute one batch."""
     start, _ = job.span(number)
     crowd, observer, felt = _respond(job, number)
-    found = identify_by(felt, job.memory, crowd, observer, job.seed, start, job.task)
+    found = identify_by(felt, dict(job.shares), crowd, observer, job.seed, start, job.task)
     named = [each.probability for each in found.by_form.values()]
     reported = [experiments_bits(each, job.trials, job.seed, EXPERIMENTS, start).mean(axis=1) for each in named]
     first, second = np.triu_indices(len(job.icons), 1)
@@ -145,7 +148,7 @@ def run(job: Job, number: int) -> BatchResult:
         d_prime=found.d_prime[:, first, second],
         confusion=np.stack(named, axis=1),
         bits=found.bits,
-        plugin=np.mean(reported, axis=0),
+        plugin=np.average(reported, axis=0, weights=[share for _, share in job.shares]),
     )
 
 
@@ -188,13 +191,14 @@ class FeltResult:
 class PooledResult(FeltResult):
     """Responses of all people to m icons.
 
-    `pooled` (m, m); `by_form` (forms, people, m) of an announced icon named by each form of memory; `bits`, `plugin`
-    (people,). `standard_error` and `person_standard_error` are the largest sampling errors of a cell, pooled and of one
-    person. What is not by a form is the mean over those that count.
+    `pooled` (m, m); `by_form` (forms, people, m) of an announced icon named by each form of memory, `shares` (forms,)
+    of laboratories with it; `bits`, `plugin` (people,). `standard_error` and `person_standard_error` are the largest
+    sampling errors of a cell, pooled and of one person. What is not by a form is the mean over those that count.
     """
 
     pooled: Array
     by_form: Array
+    shares: Array
     bits: Array
     plugin: Array
     standard_error: float
@@ -206,7 +210,7 @@ class PooledResult(FeltResult):
     @property
     def each_correct(self) -> Array:
         """Proportion of every icon that every person names correctly, (people, m)."""
-        return np.asarray(self.by_form.mean(axis=0))
+        return np.asarray(np.average(self.by_form, axis=0, weights=self.shares))
 
     @property
     def correct(self) -> Array:

@@ -42,13 +42,15 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
         return np.concatenate([getattr(part, name) for part in ordered])
 
     # In order, so that the sums do not depend on which batch was ready first.
+    shares = np.array([share for _, share in job.shares])
     by_form = normalised(np.asarray(sum(part.confusion for part in ordered)) / job.people)
     reports = np.asarray(sum(part.reported[0] for part in ordered))
     return PooledResult(
         detection=pooled_detection(joined("detected"), joined("cold_share"), reports, report_step(DT_S)),
         reports=joined("detected"),
         pairs=joined("d_prime"),
-        pooled=normalised(by_form.mean(axis=0)),
+        pooled=normalised(np.average(by_form, axis=0, weights=shares)),
+        shares=shares,
         by_form=np.concatenate([correct[number] for number in range(job.batches)], axis=1),
         bits=joined("bits"),
         plugin=joined("plugin"),
@@ -60,9 +62,9 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
 def _sampling_error(job: Job, confusions: Array, people: int = 1) -> float:
     """Largest standard error of a cell of the mean over forms, of (forms, …), to which so many people give answers."""
     icons = len(job.icons)
-    samples, exact = form_samples(job.memory, icons), {"episodes": icons <= 2, "naming": icons == 1}
+    samples, exact = form_samples(job.forms, icons), {"episodes": icons <= 2, "naming": icons == 1}
     errors = [
-        0.0 if exact[form] else sampling_error(named, people * samples[form])
-        for form, named in zip(job.forms, confusions, strict=True)
+        0.0 if exact[form] else share * sampling_error(named, people * samples[form])
+        for (form, share), named in zip(job.shares, confusions, strict=True)
     ]
-    return float(np.linalg.norm(errors) / len(errors))
+    return float(np.linalg.norm(errors))

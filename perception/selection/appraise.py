@@ -97,7 +97,7 @@ def appraise(
     rig, model = Rig.of(rig, icons[0].context.site), crowd.model
     people, nominal = model.people(crowd.people, crowd.seed), model.nominal
     felt, durations = population_response(icons, rig, people, crowd.tracking, detection=True, observer=nominal)
-    named = identify_by(felt, crowd.memory, people, nominal, crowd.seed, task=task)
+    named = identify_by(felt, model.form_shares(crowd.memory), people, nominal, crowd.seed, task=task)
     probability, bits = named.probability, float(named.bits.mean())
     each, pooled = proportion_correct(probability), normalised(probability.mean(axis=0))
     alert, middle = felt_and_named(felt.detected.probability, probability), np.median(named.d_prime, axis=0)

@@ -90,6 +90,10 @@ def test_a_kept_laboratory_names_its_form_and_the_spread_of_pairs_and_is_ranked(
     assert share == confused.forms["naming"][1]
     found = rank(icons, rig, observer=path, people=8, parameters=20)
     assert found.new_laboratory is not None and found.new_laboratory.draws == 20
+    assert "laboratory" not in found.new_laboratory.covers, "it is this one"
+    each = found.by_form
+    mean = share * each.get("naming", 0.0) + (1.0 - share) * each.get("episodes", 0.0)
+    assert found.proportion_correct == pytest.approx(mean), "as often as its draws have it"
 
 
 def laboratories(n: int, seed: int) -> Laboratories:

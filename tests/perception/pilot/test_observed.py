@@ -125,7 +125,8 @@ def test_memory_stands_beside_the_constants_of_each_draw(found: Observed[Namings
         ("memory noise (episodes)", "-0.3", r"memory noise \(episodes\): -0\.3 must be above 0"),
         ("bar of an episode", "0", r"bar of an episode: 0 must be above 0"),
         ("spread of pairs between laboratories", "-1", r"spread of pairs between laboratories: -1 must be 0 or more"),
-        (FORM, "2", r"form of memory: 2 must lie in 0 to 1"),
+        (FORM, "2", r"form of memory: 2 is none of 0 \(episodes\) and 1 \(naming\)"),
+        (FORM, "0.5", r"form of memory: 0\.5 is none of 0 \(episodes\) and 1 \(naming\)"),
     ],
 )
 def test_memory_that_cannot_be_is_refused(
@@ -168,6 +169,7 @@ def test_a_laboratory_that_was_kept_before_it_had_a_form_remembers_episodes(
     some = LaboratoryPrior.of(path, "both").first(20, 3)
     assert not some.form.any()
     assert LaboratoryPrior.of(path, "naming").first(20, 3).form.all(), "a form that is named is obeyed"
+    assert set(rank("six-icons", observer=path, people=4, parameters=0).by_form) == {"episodes"}
 
 
 def test_thresholds_carry_the_offset_of_the_laboratory(found: Observed[Namings, Fit]) -> None:

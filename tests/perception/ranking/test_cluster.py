@@ -62,7 +62,7 @@ def test_an_address_that_is_none(address: str) -> None:
 
 def test_without_the_package_the_cure_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    asked = batches.Job(tuple(ICONS), RIG, 18.0, 2, 0, 48, None, "episodes")
+    asked = batches.Job(tuple(ICONS), RIG, 18.0, 2, 0, 48, None, "episodes", (("episodes", 1.0),))
     with pytest.raises(ClusterError, match=r"needs distributed, which is not installed: .*pip install .*distributed"):
         list(on_cluster(asked, "tcp://127.0.0.1:1"))
 
