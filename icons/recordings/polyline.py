@@ -63,9 +63,10 @@ class Tunnel:
         """Return corners near these times, where the regression lines of the pieces beside them meet."""
         for _ in range(_SETTLING):
             slope, level = self._lines(times)
-            turn = np.diff(slope)
-            length = np.diff(times)
-            movable = np.isfinite(turn) & (turn != 0) & ~np.isin(times[1:-1], self.time[self.fixed])
+            turn, length = np.diff(slope), np.diff(times)
+            begins, ends = np.searchsorted(self.time, times, side="right"), np.searchsorted(self.time, times)
+            several = ends[1:] - begins[:-1] > 1
+            movable = several[1:] & several[:-1] & (turn != 0) & ~np.isin(times[1:-1], self.time[self.fixed])
             shift = np.divide(-np.diff(level), turn, out=times[1:-1].copy(), where=movable) - times[1:-1]
             shift[(shift <= -0.5 * length[:-1]) | (shift >= 0.5 * length[1:])] = 0.0
             times = times + np.concatenate(([0.0], shift, [0.0]))
@@ -82,6 +83,9 @@ class Tunnel:
         lines = np.full((2, len(times) - 1), np.nan)
         begins, ends = np.searchsorted(self.time, times, side="right"), np.searchsorted(self.time, times)
         for piece, (begin, end) in enumerate(zip(begins[:-1].tolist(), ends[1:].tolist(), strict=True)):
+            if end - begin == 1:  # a single reading inside: with those at the corners
+                begin = max(begin - 1, 0)
+                end += 1
             if end - begin > 1:
                 lines[:, piece] = np.polyfit(self.time[begin:end], self.value[begin:end], 1)
         return lines
@@ -229,13 +233,13 @@ def _straight(time: Array, low: Array, high: Array) -> bool:
 def _short(tunnel: Tunnel, path: Path, tolerance: float) -> Path:
     """Return the path on fewer levels and in fewer decimals, as far as no more corners are needed for it."""
     read = np.isin(path[0], tunnel.time)
-    scatter = float(np.abs(np.interp(tunnel.time, *path) - tunnel.value).max())
-    cost = min(max(scatter / 2, tolerance / 100), tolerance / 5)
     coarse = max(0, -math.floor(math.log10(tolerance / 2)))
     for spread in tolerance * np.array([1, 0.5, 0.25, 0.125, 0.0]):
         levels = _levels(path[1], spread)
         if tunnel.low[0] == tunnel.high[0]:
             levels[levels == levels[0]] = path[1][0]
+        scatter = float(np.abs(np.interp(tunnel.time, path[0], levels) - tunnel.value).max())
+        cost = min(max(scatter / 2, tolerance / 100), tolerance / 5)
         for decimals in range(coarse, _MOST_DECIMALS):
             shorter = np.where(read, path[0], path[0].round(decimals)), levels.round(decimals)
             if np.abs(shorter[1] - levels).max() <= cost and (np.diff(shorter[0]) > 0).all():
