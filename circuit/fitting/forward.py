@@ -90,7 +90,7 @@ def predict(rig: Rig, run: Run, phase: float = 0.0, start_K: float = 0.0) -> Pre
 def started(rig: Rig, run: Run, *, contradicted: bool = False) -> Run:
     """The run with the display's first reading as its start, where the first drive would hold it elsewhere."""
     display = [channel for channel in run.channels if channel.column == DISPLAY and not channel.clock]
-    if run.driven_by == DISPLAY or not display:
+    if run.driven_by == DISPLAY or not display or display[0].time_s[0] > run.begin_s + run.step_s:
         return run
     start_C = float(display[0].values[0])
     try:
