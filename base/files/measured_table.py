@@ -75,6 +75,10 @@ def measured(
         notes.append(f"rows that stand twice count once: {twice}")
     else:
         kept[:] = True
+        first = np.unique(rows, axis=1, return_index=True)[1] if (np.diff(time) < 0).any() else ()
+        if len(first) and (np.diff(time[np.sort(first)]) >= 0).all():
+            kept = np.isin(np.arange(len(time)), first)
+            notes.append(f"rows that were sent again count once: {len(time) - len(first):,}")
     for name, column in () if ours else columns.items():
         wrong = errors(column, SENSED_C if name.startswith("hot_plate") else POSSIBLE_C) & name.endswith("_C")
         counts[name].update(f"{value:g}" for value in column[wrong])

@@ -77,8 +77,6 @@ def setpoints_of(device: Device, time_s: Array, level_C: Array, curve: bool) -> 
 
     Raises DeviceError where baseline, level or number of segments is beyond the device.
     """
-    from thermicon.icons.recordings.polyline import cuts_of
-
     step, tick = device.most("set-point step"), device.most("tick")
     check_level("baseline", float(level_C[0]), device.interval("baseline range"), device)
     for level in (float(level_C.min()), float(level_C.max())):
@@ -86,7 +84,7 @@ def setpoints_of(device: Device, time_s: Array, level_C: Array, curve: bool) -> 
     most, tolerance = int(device.most("segments")), 0.5 * step
     while True:
         ends, room = [0, len(time_s) - 1], np.ones(len(time_s))
-        rows = cuts_of(time_s, level_C, room, ends, tolerance) if curve else range(len(time_s))
+        rows = _cuts(time_s, level_C, room, ends, tolerance) if curve else range(len(time_s))
         segments = _segments(device, [float(time_s[k]) for k in rows], [float(level_C[k]) for k in rows])
         if len(segments) <= most:
             return Setpoints(tick, step, round(float(level_C[0]) / step), segments)
@@ -96,6 +94,23 @@ def setpoints_of(device: Device, time_s: Array, level_C: Array, curve: bool) -> 
                 f"repeats or a coarser wave"
             )
         tolerance *= 2
+
+
+def _cuts(time: Array, value: Array, room: Array, ends: list[int], limit: float) -> list[int]:
+    """Places between whose chords no value is more than `limit` of its room off, from `ends` (Douglas & Peucker 1973).
+
+    Time goes with values times cuts at the worst.
+    """
+    cuts, pieces = set(ends), list(pairwise(ends))
+    while pieces:
+        first, last = pieces.pop()
+        inner, both = slice(first + 1, last), [first, last]
+        off = np.abs(value[inner] - np.interp(time[inner], time[both], value[both])) / room[inner]
+        if off.size and off.max() > limit:
+            cut = first + 1 + int(off.argmax())
+            cuts.add(cut)
+            pieces += [(first, cut), (cut, last)]
+    return sorted(cuts)
 
 
 def lag_of(device: Device) -> float:

@@ -13,10 +13,11 @@ from thermicon.base.numbers.cores import quiet_blas
 
 from ..rig.faults import PARAMETERS
 from ..rig.rig import AnyRig, Rig
+from .forward import started
 from .identify import identified, tellable
 from .keys import CONTACT, FitError, FitKey, free_keys, possible_keys
 from .log import Log, LogError, read_log
-from .notes import Noticed, beyond_noise, closing, disagreement, far_off, late_column, remarks
+from .notes import Noticed, beyond_noise, closing, disagreement, failed, far_off, late_column, remarks, unsteady
 from .overlay import aligned, check_clocks, check_sensors
 from .problem import OFFSET_SD_K, FitProblem, changed_layers
 from .rig_fit import RigFit, channel_fits, reason_of, uncertainties
@@ -71,8 +72,9 @@ def fit(
 
     Notes
     -----
-    The rig is taken as steady at the first row, and its current lasts until the next. Robust least squares (Huber,
-    beyond three standard deviations) with bounds, by `scipy.optimize.least_squares`. The noise of each channel comes
+    The rig is taken as steady at the first row, under its first drive or, where the display's first reading contradicts
+    that, at a level that is fitted along; its current lasts until the next row. Robust least squares (Huber, beyond
+    three standard deviations) with bounds, by `scipy.optimize.least_squares`. The noise of each channel comes
     from its residuals; where neighbouring residuals are alike, because the model leaves something out, intervals are
     widened accordingly, as by the error of the skin's mesh. Intervals allow for skin that differs as it does between
     people, and hold if what else is not free is right.
@@ -105,6 +107,11 @@ def fit(
     problem = FitProblem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin)
     check_sensors(problem)
     solution = solve(problem)
+    moving = [noticed.facts["run"] for noticed in unsteady(problem, solution.theta)]
+    runs = tuple(started(rig, run, contradicted=run.name in moving) for run in problem.runs)
+    if any(run.start_C != before.start_C for run, before in zip(runs, problem.runs, strict=True)):
+        problem = problem.again(problem.rig, keys, runs)
+        solution = solve(problem)
     check_clocks(problem, solution.theta)
     sources = tuple((log.name, log.sha256) for log in read)
     return _result(problem, solution, rig, keys, sources, notes)
@@ -138,7 +145,8 @@ def _result(
 ) -> RigFit:  # fmt: skip
     missed = beyond_noise(problem, solution.theta, solution.inflation)
     late = late_column(problem, solution)
-    parameters, correlation = identified(problem, solution, start, late=late is not None)
+    mend = Noticed("late-cure") if late else failed(problem, solution.theta)
+    parameters, correlation = identified(problem, solution, start, mend=str(mend or ""))
     unknown = tuple(item for item in parameters if not item.identified)
     disagreed, why = disagreement(problem, solution, missed, late, unknown)
     remarked = remarks(problem, solution.theta, misfit=why is not None)

@@ -34,8 +34,6 @@ WORSE = 1.5
 WHOLE = 1.0
 """A scale is not known to its own size: however small it was fitted, nothing is said of it."""
 
-LATE_FIRST = "first give the late column a file of its own, and fit again"
-
 
 @dataclass(frozen=True, slots=True)
 class FittedParameter:
@@ -81,9 +79,9 @@ def half_width(log: bool, sd: float) -> float:
 
 
 def identified(
-    problem: FitProblem, solution: Solution, start: Rig, *, late: bool = False
+    problem: FitProblem, solution: Solution, start: Rig, *, mend: str = ""
 ) -> tuple[tuple[FittedParameter, ...], Array]:
-    """The free keys with intervals, against the rig as given, and correlations; a `late` column is mended first."""
+    """The free keys with intervals, against the rig as given, and correlations; none is known of a fit to `mend`."""
     count, theta = len(problem.keys), solution.theta
     deviation = np.sqrt(np.diag(solution.covariance)[:count])
     correlation = solution.covariance[:count, :count] / np.outer(deviation, deviation)
@@ -92,11 +90,12 @@ def identified(
     wanting = [
         k
         for k, key in enumerate(problem.keys)
-        if not half_width(key.log, share[k] * float(deviation[k])) < key.usual
+        if mend
+        or not half_width(key.log, share[k] * float(deviation[k])) < key.usual
         or (key.log and half_width(True, float(deviation[k])) >= WHOLE)
         or _at_bound(problem, theta, k)
     ]
-    advice = dict.fromkeys(wanting, LATE_FIRST) if late else cures(problem, theta, wanting, correlation)
+    advice = dict.fromkeys(wanting, mend) if mend else cures(problem, theta, wanting, correlation)
     parameters = []
     for k, key in enumerate(problem.keys):
         half, before = T95 * float(deviation[k]), value_of(start, key.key)

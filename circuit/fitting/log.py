@@ -84,19 +84,20 @@ class Log:
         time = values.pop("time_s")
         _check_times(name, time)
         used = {key: column for key, column in values.items() if is_known(key)}
-        for key, column in used.items():
-            if not np.isfinite(column).any():
-                raise LogError(f"{name}: {key} holds no number at all; remove the column, or connect the sensor")
+        empty = [key for key, column in used.items() if not np.isfinite(column).any()]
+        used = {key: column for key, column in used.items() if key not in empty}
         if not used:
             raise LogError(
                 f"{name}: no column of a log; needed is one of {', '.join(DRIVES)}, and any of "
-                f"{', '.join(MEASURED)}; found time_s, {', '.join(values)}"
+                f"{', '.join(MEASURED)}, with numbers in it; found time_s, {', '.join(values)}"
             )
         for key, column in {"time_s": time, **used}.items():
             if fault := unit_fault(key, column):
                 raise LogError(f"{name}: {'; '.join(fault)}")
-        unused = ", ".join(key for key in values if key not in used)
-        more = (f"{name}: columns that are not used: {unused}",) if unused else ()
+        unused = ", ".join(key for key in values if key not in (*used, *empty))
+        more = [f"{name}: columns that are not used: {unused}"] if unused else []
+        if empty:
+            more.append(f"{name}: columns that are empty throughout, and left out: {', '.join(empty)}")
         for array in (time, *used.values()):
             array.setflags(write=False)
         return Log(name, sha256, time, tuple(used.items()), (*notes, *more))

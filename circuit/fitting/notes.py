@@ -22,10 +22,14 @@ from .keys import CONTACT, free_keys, possible_keys
 from .problem import FitProblem, Unknown
 from .rig_fit import LARGEST, channel_fits
 from .runs import Channel
-from .solve import Solution, covariance_of, huber, parts_of, solve
+from .solve import LEAST_SD, Solution, covariance_of, huber, parts_of, solve
 
-EARLY_S, EARLY_TIMES, EARLY_NOISE = 2.0, 1.2, 5.0
-"""A start that is not steady shows in the first seconds: residuals well above noise, and above those of the rest."""
+EARLY_S, EARLY_TIMES, EARLY_NOISE, START_NOISE = 2.0, 1.2, 2.0, 3.0
+"""A start that is not steady shows in the first seconds, in residuals above noise and above those of the rest; of a run
+whose start is fitted along, in residuals of so many times the noise anywhere."""
+
+FAR = 10.0
+"""Residuals of so many times the log's noise are another matter than noise: nothing is known from such a fit."""
 
 OFFSET_SDS = 3.0
 """A sensor that is off by more than this many standard deviations of OFFSET_SD_K is named."""
@@ -101,15 +105,26 @@ def far_off(problem: FitProblem, theta: Array) -> list[tuple[Channel, float]]:
 
 
 def unsteady(problem: FitProblem, theta: Array) -> list[Noticed]:
-    """Runs whose first seconds fit much worse than the rest."""
+    """Runs whose first seconds fit much worse than the rest, or that a start fitted along does not make fit."""
     names = []
-    for each, (_, _, channel) in zip(channel_fits(problem, theta), problem.channels(), strict=True):
-        residual = np.abs(each.difference)
-        early = residual[each.time_s < EARLY_S]
-        most = max(EARLY_TIMES * float(np.median(residual)), EARLY_NOISE * channel.noise, 1e-3)
-        if channel.temperature and early.size and np.median(early) > most:
-            names.append(each.run)
+    for part, (r, _, channel) in zip(in_noise(problem, theta), problem.channels(), strict=True):
+        run = problem.runs[r]
+        early = part[problem.run_time_s(theta, r, channel) < EARLY_S]
+        if channel.temperature and early.size:
+            usual = MAD_TO_SD * float(np.median(np.abs(part)))
+            first = MAD_TO_SD * float(np.median(np.abs(early)))
+            moving = run.start_C is not None and usual > START_NOISE
+            if moving or first > max(EARLY_TIMES * usual, EARLY_NOISE):
+                names.append(run.name)
     return [Noticed("unsteady", {"run": name, "early_s": EARLY_S}) for name in dict.fromkeys(names)]
+
+
+def failed(problem: FitProblem, theta: Array) -> Noticed | None:
+    """What is mended first where no interval can be trusted: a start, or residuals far beyond the log's noise."""
+    if unsteady(problem, theta):
+        return Noticed("unsteady-cure")
+    far = any(np.sqrt(np.mean(part**2)) > FAR for part in in_noise(problem, theta) if part.size)
+    return Noticed("far-off-cure") if far else None
 
 
 def closing(
@@ -171,8 +186,8 @@ standard deviations of the delay itself."""
 def beyond_noise(problem: FitProblem, theta: Array, inflation: Sequence[float] = ()) -> tuple[Noticed, ...]:
     """Channels whose residuals exceed their noise or, by the `inflation`, have a structure."""
     noticed, noises = list[Noticed](), [channel.noise for _, _, channel in problem.channels()]
-    sizes = parts_of(problem, problem.residuals(theta, [max(noise, 1e-9) for noise in noises]))
-    for place, (each, part) in enumerate(zip(channel_fits(problem, theta), sizes, strict=True)):
+    parts = in_noise(problem, theta)
+    for place, (each, part) in enumerate(zip(channel_fits(problem, theta), parts, strict=True)):
         factor, where = inflation[place] if inflation else 1.0, {"file": each.file, "column": each.column}
         if each.difference.size and MAD_TO_SD * float(np.median(np.abs(part))) > BEYOND:
             cause = "beyond-noise-alike" if factor > ALIKE else "beyond-noise"
@@ -181,6 +196,12 @@ def beyond_noise(problem: FitProblem, theta: Array, inflation: Sequence[float] =
         elif factor > ALIKE:
             noticed.append(Noticed("alike", {**where, "times": math.sqrt(factor)}))
     return tuple(noticed)
+
+
+def in_noise(problem: FitProblem, theta: Array) -> list[Array]:
+    """Return the residuals of each channel in SDs of its noise, and of what a drive unknown between rows explains."""
+    least = [max(channel.noise, LEAST_SD[channel.temperature]) for _, _, channel in problem.channels()]
+    return parts_of(problem, problem.residuals(theta, least))
 
 
 def late_column(problem: FitProblem, solution: Solution) -> Noticed | None:

@@ -10,7 +10,7 @@ from thermicon.base.numbers.arrays import Array
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..solver.trace import Trace
-from .forward import Prediction, predict
+from .forward import Prediction, predict, started
 from .keys import FitError
 from .log import Log, LogError
 from .problem import FitProblem
@@ -156,7 +156,8 @@ LEAST_OVERLAP = 0.5
 def aligned(rig: Rig, runs: Sequence[Run]) -> tuple[Run, ...]:
     """Runs with the shift of every further clock, by correlation; FitError or LogError where that is not possible."""
     out = []
-    for run in runs:
+    for each in runs:
+        run = started(rig, each)
         try:
             found = predict(rig, run)
         except RigError as fault:

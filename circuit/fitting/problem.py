@@ -21,7 +21,7 @@ from thermicon.base.numbers.arrays import Array
 
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from .forward import Prediction, predict
+from .forward import START_SD_K, Prediction, predict
 from .keys import FitError, FitKey, value_of
 from .runs import DISPLAY, Channel, Run
 from .whiten import CommonErrors, shared
@@ -60,9 +60,9 @@ Factors = Mapping[tuple[str, int], float]
 class Unknown:
     """One number of a fit: a key of the rig, a scale as its logarithm, or something fitted along with the keys.
 
-    A kind is key, offset, row, phase, shift, drift, one of LAYER_KINDS, whose place is the layer, or, where a column
-    is tried to be late, late. The fit begins at `first` and stays between `low` and `high`; `sd` is that of the prior
-    about 0, of a key, which has none, a usual change; `step` is that of the derivative.
+    A kind is key, offset, row, phase, start, shift, drift, one of LAYER_KINDS, whose place is the layer, or, where a
+    column is tried to be late, late. The fit begins at `first` and stays between `low` and `high`; `sd` is that of the
+    prior about 0, of a key, which has none, a usual change; `step` is that of the derivative.
     """
 
     kind: str
@@ -136,14 +136,15 @@ class FitProblem:
 
     def simulated(self, theta: Array) -> tuple[Prediction, ...]:
         """All runs at a point; raises RigError where the rig cannot exist. Depends on keys and skin alone."""
-        moving = [k for k, item in enumerate(self.unknowns) if item.kind in ("key", "phase", *LAYER_KINDS)]
+        moving = [k for k, item in enumerate(self.unknowns) if item.kind in ("key", "phase", "start", *LAYER_KINDS)]
         token = theta[moving].tobytes()
         if token not in self._kept:
             if len(self._kept) > 4 * (len(moving) + 1):
                 self._kept.clear()
             rig = self.rig.with_(**self.values(theta), **changed_layers(self.rig, self.factors(theta)))
             self._kept[token] = tuple(
-                predict(rig, run, self.nuisance(theta, "phase", r, 0)) for r, run in enumerate(self.runs)
+                predict(rig, run, *(self.nuisance(theta, kind, r, 0) for kind in ("phase", "start")))
+                for r, run in enumerate(self.runs)
             )
         return self._kept[token]
 
@@ -258,6 +259,8 @@ def _along(runs: Sequence[Run], offset_sd_K: float) -> list[Unknown]:
             extra.append(Unknown("row", r, 0, ROW_SHARE * run.step_s, step=1e-3))
         if run.phase is not None:
             extra.append(Unknown("phase", r, 0, 1.0, low=-PHASES, high=PHASES, step=1e-2))
+        if run.start_C is not None:
+            extra.append(Unknown("start", r, 0, START_SD_K))
         for clock in range(1, len(run.clocks) + 1):
             extra += [
                 Unknown("shift", r, clock, SHIFT_ROOM_S, low=-SHIFT_ROOM_S, high=SHIFT_ROOM_S),

@@ -191,7 +191,7 @@ def uncertainties(
 
 def _covering(item: FittedParameter, before: float) -> float:
     """Half width that holds the fitted interval and the one before; the value alone where the interval says nothing."""
-    if not item.identified:
+    if not item.identified and item.half_width > before:
         return abs(item.value - item.start) / (item.start if item.log else 1.0)
     ends = before * item.start if item.log else before
     low, high = min(item.low, item.start - ends), max(item.high, item.start + ends)

@@ -34,8 +34,9 @@ SAME_SHARE = 0.05
 
 SHORTEST_S = 5.0
 
-MOST_MOVED = 1.2
-"""Skin follows a display and moves less; noise and a slow rest may make it seem to move more by so much."""
+MOST_MOVED, LEAST_MOVED_K = 1.2, 1e-3
+"""Skin follows a display and moves less; noise and a slow rest may make it seem to move more by so much, and rounding,
+of a display that is held, by any."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,7 +74,7 @@ class Run:
     `shifts` are about what to add to their times. `unknown` (rows − 1,) is the SD of the drive's mean between rows,
     None where the rows tell it; `phase` (rows,) what all rows are wrong by, as one SD, if a loop was read at one phase
     of its steps. `points`: the rows, `step_s` apart, miss updates of the driver. `logged`: the drive of each row, where
-    `drive` has means.
+    `drive` has means. `start_C`: the display's first reading, where the first drive would hold it elsewhere.
     """
 
     name: str
@@ -90,6 +91,7 @@ class Run:
     points: bool = False
     notes: tuple[str, ...] = ()
     logged: Drive | None = None
+    start_C: float | None = None
 
     @property
     def held(self) -> bool:
@@ -200,7 +202,7 @@ def _part(time: Array, drive: Array, alone: bool) -> slice:
 def _check_exchanged(log: Log) -> None:
     if {DISPLAY, "skin_C"} <= set(log.measured):
         moves = [float(np.subtract(*np.nanpercentile(log.column(name), [95, 5]))) for name in (DISPLAY, "skin_C")]
-        if moves[1] > MOST_MOVED * moves[0]:
+        if moves[1] > MOST_MOVED * max(moves[0], LEAST_MOVED_K):
             raise LogError(
                 f"{log.name}: skin_C changes by {moves[1]:.2g} K, and {DISPLAY}, which moves it, by {moves[0]:.2g} K "
                 f"alone: exchange both columns, or remove the wrong one"

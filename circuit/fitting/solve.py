@@ -28,6 +28,8 @@ ROUGH = 1.7
 MOST_EVALUATIONS = 30
 FEWEST_INDEPENDENT = 8.0
 """However alike neighbouring residuals are, a channel counts as at least so many independent rows."""
+NEGLIGIBLE = 1e-2
+"""Residuals of so many standard deviations of the noise are rounding, however alike."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,7 +93,7 @@ def alike(residuals: Array) -> float:
     count = len(residuals)
     clipped = np.clip(residuals - np.median(residuals), -OUTLIER, OUTLIER)
     power = float(clipped @ clipped)
-    if count < 3 or power == 0.0:
+    if count < 3 or power <= count * NEGLIGIBLE**2:
         return 1.0
     neighbour = float(clipped[1:] @ clipped[:-1]) / power
     if neighbour < 3.0 / np.sqrt(count):

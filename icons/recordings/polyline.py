@@ -1,7 +1,7 @@
-"""Few corner points for a recording: straight pieces that stay within a tolerance of every reading.
+"""Few corner points for a recording: a polyline in the tunnel that the tolerance makes around its readings.
 
-Ramer, Douglas and Peucker's cuts come first, at twice the tolerance, since noise may reach the tolerance on both sides.
-Then the pieces become lines of least squares, what leaves the tolerance is cut again, and what is not needed goes.
+Lines that reach as far through the tunnel as they can give the places of corners, at the least tolerance that needs no
+more of them. Regression lines of the pieces meet near those places, and cones keep every piece in the tunnel.
 """
 
 from __future__ import annotations
@@ -9,12 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Places = NDArray[np.intp]
 Path = tuple[Array, Array]
 """Times and values of corners, each (corners,)."""
 
@@ -24,153 +24,123 @@ SPARE = 1e-9
 INSTANT_S = 1e-9
 """How far two readings at one time are held apart while fitting, so that a step is a piece like others."""
 
-_SETTLING, _LEVELLING, _LITTLE = 4, 12, 0.5
-"""Rounds in which corner times settle, and then values, where a path leaves the room by less than this share of it."""
+GAP_STEPS = 3
+"""A gap is longer than so many usual steps between readings."""
 
-_SOFT, _FIRM = 1e-7, 1e9
-"""Weights of the reading at a corner, which decides where no other does, and of a prescribed value."""
+_HALVINGS, _SETTLING = 6, 3
+"""Halvings by which the least tolerance is sought, and rounds in which corner times settle."""
 
 MOST_CORNERS = 500
 """Corners of an icon that is made of a recording: more than anybody edits."""
-_MOST_DECIMALS = 12
+_MOST_DECIMALS = 9
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
-    """Readings (readings,) that a path may be ``room`` off, with ``fixed`` corners, and how ``late`` steps make it."""
+class Tunnel:
+    """Readings (readings,) with the lowest and highest value that a path may have there, and ``fixed`` corners.
 
+    Of two readings at one time the second is ``time`` a little later; ``recorded`` is the time of both.
+    """
+
+    recorded: Array
     time: Array
     value: Array
-    room: Array
+    low: Array
+    high: Array
     fixed: NDArray[np.bool_]
-    late: Array
-    prescribed: bool
 
-    def excess(self, path: Path) -> Array:
-        """Return by how much a path leaves the room of each reading, as a share of it; negative inside."""
-        return np.asarray(np.abs(np.interp(self.time, *path) - self.value) / self.room - 1 - SPARE)
-
-    def holds(self, path: Path) -> bool:
-        """Return whether a path has its corners in order and keeps to the room of every reading."""
-        return bool((np.diff(path[0]) > 0).all() and (self.excess(path) <= 0).all())
-
-    def worst(self, path: Path) -> NDArray[np.intp]:
-        """Return the worst reading of each piece that leaves the room of a reading."""
-        excess = self.excess(path)
-        order = np.argsort(-excess, kind="stable")[: int((excess > 0).sum())]
-        return order[np.unique(self.piece(path[0])[order], return_index=True)[1]]
-
-    def at_fault(self, path: Path) -> NDArray[np.intp]:
-        """Return the corners of pieces that leave the room of a reading, and those that are not in order."""
-        piece = self.piece(path[0])[self.excess(path) > 0]
-        piece = np.append(piece, np.flatnonzero(np.diff(path[0]) <= 0))
-        return np.union1d(piece, piece + 1)
-
-    def piece(self, times: Array) -> NDArray[np.intp]:
-        """Return for each reading the piece that it belongs to, between corners at these times."""
-        return np.clip(np.searchsorted(times, self.time, side="right") - 1, 0, len(times) - 2)
-
-    def cuts(self, limit: float) -> NDArray[np.intp]:
-        """Return the readings between whose chords none is more than `limit` of its room off."""
-        return np.array(cuts_of(self.time, self.value, self.room, np.flatnonzero(self.fixed).tolist(), limit))
+    def cuts(self, share: float, most: int) -> list[int]:
+        """Return readings between which one line keeps to this share of the tunnel, each as late as it can be."""
+        low = self.value + share * (self.low - self.value)
+        high = self.value + share * (self.high - self.value)
+        cuts = [0]
+        for last in np.flatnonzero(self.fixed)[1:].tolist():
+            while cuts[-1] < last and len(cuts) <= most:
+                cuts.append(_farthest(self.time, low, high, cuts[-1], last))
+        return cuts
 
     def fit(self, times: Array) -> Path:
-        """Return the path with corners near these times that fits best by least squares; it may leave the room."""
+        """Return corners near these times, where the regression lines of the pieces beside them meet."""
         for _ in range(_SETTLING):
-            times = self._met(times)
-        return self.levelled(times, np.arange(len(times)))
+            slope, level = self._lines(times)
+            turn, length = np.diff(slope), np.diff(times)
+            begins, ends = np.searchsorted(self.time, times, side="right"), np.searchsorted(self.time, times)
+            several = ends[1:] - begins[:-1] > 1
+            movable = several[1:] & several[:-1] & (turn != 0) & ~np.isin(times[1:-1], self.time[self.fixed])
+            shift = np.divide(-np.diff(level), turn, out=times[1:-1].copy(), where=movable) - times[1:-1]
+            shift[(shift <= -0.5 * length[:-1]) | (shift >= 0.5 * length[1:])] = 0.0
+            times = times + np.concatenate(([0.0], shift, [0.0]))
+        slope, level = self._lines(times)
+        beside = np.full((2, len(times)), np.nan)
+        beside[0, 1:] = level + slope * times[1:]
+        beside[1, :-1] = level + slope * times[:-1]
+        known = np.isfinite(beside)
+        mean = np.where(known, beside, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
+        return times, np.where(known.any(axis=0), mean, np.interp(times, self.time, self.value))
 
-    def levelled(self, times: Array, level: NDArray[np.intp]) -> Path:
-        """The path with corners at these times that fits best; corners of one number in `level` share a value.
+    def _lines(self, times: Array) -> Array:
+        """Return slope and level at time 0 (2, pieces) of the regression line of each piece, NaN where none is."""
+        lines = np.full((2, len(times) - 1), np.nan)
+        begins, ends = np.searchsorted(self.time, times, side="right"), np.searchsorted(self.time, times)
+        for piece, (begin, end) in enumerate(zip(begins[:-1].tolist(), ends[1:].tolist(), strict=True)):
+            if end - begin == 1:  # a single reading inside: with those at the corners
+                begin = max(begin - 1, 0)
+                end += 1
+            if end - begin > 1:
+                lines[:, piece] = np.polyfit(self.time[begin:end], self.value[begin:end], 1)
+        return lines
 
-        Just outside of the room, readings weigh the more the farther they are off (Lawson 1961).
-        """
-        weight = np.ones_like(self.time)
-        path = times, self._values(times, level, weight)
-        for _ in range(_LEVELLING):
-            if not 0 < (excess := self.excess(path)).max() < _LITTLE:
-                break
-            weight *= 1 + excess
-            path = times, self._values(times, level, weight)
-        return path
-
-    def _met(self, times: Array) -> Array:
-        """Return corner times moved to where the regression lines of the two pieces beside a corner meet."""
-        piece, count = self.piece(times), len(times) - 1
-        inner = (self.time > times[piece]) & (self.time < times[piece + 1])
-        piece, time, value = piece[inner], self.time[inner], self.value[inner]
-        number = np.bincount(piece, minlength=count)
-        known = number > 1
-        mean_t, mean_v = (np.bincount(piece, each, count) / np.maximum(number, 1) for each in (time, value))
-        off = time - mean_t[piece]
-        slope = np.bincount(piece, off * value, count) / np.where(known, np.bincount(piece, off**2, count), 1.0)
-        # At the corner the line before it is `gap` above the line after it, which gains `turn` on it each second.
-        gap = (mean_v + slope * (times[1:] - mean_t))[:-1] - (mean_v + slope * (times[:-1] - mean_t))[1:]
-        turn, length = np.diff(slope), np.diff(times)
-        movable = known[1:] & known[:-1] & (turn != 0) & ~np.isin(times[1:-1], self.time[self.fixed])
-        shift = np.divide(gap, turn, out=np.zeros(count - 1), where=movable)
-        shift[(shift <= -0.5 * length[:-1]) | (shift >= 0.5 * length[1:])] = 0.0
-        return np.asarray(times + np.concatenate(([0.0], shift, [0.0])))
-
-    def _values(self, times: Array, level: NDArray[np.intp], weight: Array) -> Array:
-        """Return the values of corners that fit best: a tridiagonal system, in which shared levels are one unknown."""
-        from scipy.sparse import csc_array, diags_array
-        from scipy.sparse.linalg import spsolve
-
-        piece, count = self.piece(times), len(times)
-        right = (self.time - times[piece]) / np.diff(times)[piece]
-        left = 1 - right
-
-        def at_corners(on_left: Array, on_right: Array) -> Array:
-            sums = np.bincount(piece, weight * on_left, count) + np.bincount(piece + 1, weight * on_right, count)
-            return np.asarray(sums)
-
-        beside = np.bincount(piece, weight * left * right, count - 1)
-        own, pull = at_corners(left**2, right**2), at_corners(left * self.value, right * self.value)
-        hold = np.full(count, _SOFT)
-        hold[0] = _FIRM if self.prescribed else _SOFT
-        numbers, column = np.unique(level, return_inverse=True)
-        shared = csc_array((np.ones(count), (np.arange(count), column)), shape=(count, len(numbers)))
-        square = csc_array(diags_array([beside, own + hold, beside], offsets=[-1, 0, 1]))
-        vector = shared.T @ (pull + hold * np.interp(times, self.time, self.value))
-        return np.asarray(np.atleast_1d(np.asarray(spsolve(csc_array(shared.T @ square @ shared), vector)))[column])
+    def inside(self, path: Path) -> Path:
+        """Return the path moved into the tunnel, with more corners where a piece would leave it."""
+        grid = np.union1d(self.time, path[0])
+        low = np.interp(grid, self.time, np.maximum(self.low, self.value.min()))
+        high = np.interp(grid, self.time, np.minimum(self.high, self.value.max()))
+        ends = np.searchsorted(grid, path[0])
+        wanted = np.clip(np.interp(grid, *path), low, high)
+        corner, level = [0], [float(wanted[0])]
+        for end in ends[1:].tolist():
+            while corner[-1] < end:
+                ahead = slice(corner[-1] + 1, end + 1)
+                run = grid[ahead] - grid[corner[-1]]
+                least = np.maximum.accumulate((low[ahead] - level[-1]) / run)
+                most = np.minimum.accumulate((high[ahead] - level[-1]) / run)
+                slope = (wanted[ahead] - level[-1]) / run
+                reached = np.flatnonzero((least <= slope) & (slope <= most))
+                # Back to the path as soon as it cannot be followed, or else as far as a line keeps to the tunnel.
+                last = reached[-1] if reached.size else int((least <= most).sum()) - 1
+                corner.append(corner[-1] + int(last) + 1)
+                level.append(level[-1] + float(np.clip(slope, least, most)[last] * run[last]))
+        return grid[corner], np.array(level)
 
 
-def cuts_of(time: Array, value: Array, room: Array, ends: list[int], limit: float) -> list[int]:
-    """Places between whose chords no value is more than `limit` of its room off, from `ends` (Douglas & Peucker 1973).
+def tunnel_of(time: Array, reading: Array, tolerance: float, start: float | None = None) -> Tunnel:
+    """The tunnel around readings, of which `start` may prescribe the first, and nowhere beyond the farthest of them.
 
-    Time goes with values times cuts at the worst.
-    """
-    cuts, pieces = set(ends), list(pairwise(ends))
-    while pieces:
-        first, last = pieces.pop()
-        inner, both = slice(first + 1, last), [first, last]
-        off = np.abs(value[inner] - np.interp(time[inner], time[both], value[both])) / room[inner]
-        if off.size and off.max() > limit:
-            cut = first + 1 + int(off.argmax())
-            cuts.add(cut)
-            pieces += [(first, cut), (cut, last)]
-    return sorted(cuts)
-
-
-def course_of(time: Array, reading: Array, tolerance: float, start: float | None = None) -> Course:
-    """The course of readings, of which `start` may prescribe the first; two at one time are a step where no value lies
-    within the tolerance of both, and otherwise one.
+    Two readings at one time are a step where no value lies within the tolerance of both, and otherwise one.
     """
     apart, twice = np.abs(np.diff(reading)), np.diff(time) == 0
     step = twice & (apart > 1.99 * tolerance)
+    value, room = reading.copy(), np.full_like(time, tolerance * (1 - SPARE))
     if start is not None:
         step[0] |= twice[0] and abs(reading[1] - start) > tolerance
     same = np.flatnonzero(twice & ~step)
-    value, room = reading.copy(), np.full_like(time, tolerance)
-    value[same], room[same] = (reading[same] + reading[same + 1]) / 2, tolerance - apart[same] / 2
+    value[same] = (reading[same] + reading[same + 1]) / 2
+    room[same] -= apart[same] / 2
+    low, high = value - room, value + room
     if start is not None:
-        value[0] = start
-    fixed = np.append(True, step) | np.append(step, True)
+        value[0] = low[0] = high[0] = start
+    ends = step | gaps(time)
+    fixed = np.append(True, ends) | np.append(ends, True)
     fixed[same] |= fixed[same + 1]
     late = INSTANT_S * np.append(0.0, np.cumsum(step))
     once = np.delete(np.arange(len(time)), same + 1)
-    return Course((time + late)[once], value[once], room[once], fixed[once], late[once], start is not None)
+    return Tunnel(time[once], (time + late)[once], value[once], low[once], high[once], fixed[once])
+
+
+def gaps(time: Array) -> NDArray[np.bool_]:
+    """Return which intervals (readings − 1,) are gaps: longer than three usual steps, of the median length."""
+    steps = np.diff(time)
+    return np.asarray(steps > GAP_STEPS * (1 + 1e-6) * np.median(steps[steps > 0]))
 
 
 def fit_corners(
@@ -179,27 +149,39 @@ def fit_corners(
     tolerance: float,
     start: float | None = None,
 ) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return times (s) and values of corners whose polyline lies within ``tolerance`` of every reading (readings,).
+    """Return times (s) and values of corners whose polyline lies within ``tolerance`` of readings (readings,).
 
-    A time that stands twice with values further apart than the tolerance bridges is a step, and two corners have that
-    time. Exact holds, levels that return and short decimals are preferred, as far as the tolerance allows. ``start``
-    prescribes the first value. Raises ValueError when 500 corners are not enough.
+    It does so at every reading and, of the straight line between two readings, everywhere. A time that stands twice
+    with values further apart than the tolerance bridges is a step, and two corners have that time; a gap has a corner
+    at each end. Exact holds, levels that return and short decimals are preferred, as far as the tolerance allows.
+    ``start`` prescribes the first value. Raises ValueError when 500 corners are not enough.
 
     >>> fit_corners([0, 1, 2, 3, 4, 5], [32.01, 31.99, 29, 26, 26.01, 25.99], tolerance=0.05)
     ((0.0, 1.0, 3.0, 5.0), (32.0, 32.0, 26.0, 26.0))
     """
     time, reading = np.array(time_s, dtype=np.float64), np.array(value, dtype=np.float64)
-    course = course_of(time, reading, tolerance, start)
-    path = _sparse(course, _inside(course))
+    tunnel = tunnel_of(time, reading, tolerance, start)
+    cuts = tunnel.cuts(1.0, MOST_CORNERS)
+    less, share = 0.0, 1.0
+    for _ in range(_HALVINGS):
+        middle = (less + share) / 2
+        narrower = tunnel.cuts(middle, len(cuts))
+        if len(narrower) == len(cuts):
+            share, cuts = middle, narrower
+        else:
+            less = middle
+    path = tunnel.inside(tunnel.fit(tunnel.time[cuts]))
     if len(path[0]) > MOST_CORNERS:
         message = f"{MOST_CORNERS} corners are not enough to stay within {tolerance:g} of every reading"
         if 3 * (scatter := noise(reading)) > tolerance:
             try_K = f"so try a tolerance of {float(f'{6 * scatter:.1g}'):g}"
             message += f"; the readings scatter by about {scatter:.2g} (standard deviation), {try_K}"
         raise ValueError(message)
-    times, values = _rounded(course, _shared(course, path, tolerance), tolerance)
+    times, values = _short(tunnel, path, tolerance)
     flat = np.diff(values) == 0
-    corner = np.concatenate(([True], ~(flat[1:] & flat[:-1]), [True]))
+    corner = np.concatenate(([True], ~(flat[1:] & flat[:-1]), [True])) | np.isin(times, tunnel.time[tunnel.fixed])
+    row = np.searchsorted(tunnel.time, times)
+    times = np.where(tunnel.time[row] == times, tunnel.recorded[row], times)
     return tuple(times[corner].tolist()), tuple((values[corner] + 0.0).tolist())
 
 
@@ -209,88 +191,70 @@ def noise(value: Array) -> float:
     return float(np.median(bends)) / (0.6745 * math.sqrt(6)) if bends.size else 0.0
 
 
-def _inside(course: Course) -> Path:
-    """Return a path that keeps to the course, or one of more corners than are allowed."""
-    cuts = course.cuts(2.0)
-    while len(cuts) <= MOST_CORNERS:
-        path = course.fit(course.time[cuts])
-        if course.holds(path):
-            return path
-        worst = course.worst(path)
-        more = np.union1d(cuts, worst)
-        if len(more) == len(cuts):  # the worst readings are corners already: halve the pieces beside them
-            at = np.searchsorted(cuts, worst)
-            beside = np.stack([cuts[np.maximum(at - 1, 0)], cuts[np.minimum(at + 1, len(cuts) - 1)]])
-            more = np.union1d(cuts, (beside + worst) // 2)
-        if len(more) == len(cuts):
+def _piece(times: Array, at: Array) -> Places:
+    """Return the piece between corners at these times to which each time belongs."""
+    return np.clip(np.searchsorted(times, at, side="right") - 1, 0, len(times) - 2)
+
+
+def _farthest(time: Array, low: Array, high: Array, first: int, last: int) -> int:
+    """Return the last reading, up to `last`, to which one line from the first keeps between low and high."""
+
+    def straight(end: int) -> bool:
+        return _straight(time[first : end + 1], low[first : end + 1], high[first : end + 1])
+
+    reached, size = first + 1, 1
+    while reached < last and straight(min(reached + size, last)):
+        reached = min(reached + size, last)
+        size *= 2
+    while size > 1:
+        size //= 2
+        if reached + size <= last and straight(reached + size):
+            reached += size
+    return reached
+
+
+def _straight(time: Array, low: Array, high: Array) -> bool:
+    """Return whether one line keeps between low and high, by halving the slopes that no pair of readings excludes."""
+    least, most = ((side[-1] - other[0]) / (time[-1] - time[0]) for side, other in ((low, high), (high, low)))
+    for _ in range(60):
+        slope = (least + most) / 2
+        floor, ceiling = low - slope * (time - time[0]), high - slope * (time - time[0])
+        under, over = int(floor.argmax()), int(ceiling.argmin())
+        if least > most or floor[under] <= ceiling[over]:
             break
-        cuts = more
-    cuts = course.cuts(1.0)
-    return course.time[cuts], course.value[cuts]
-
-
-def _sparse(course: Course, path: Path) -> Path:
-    """Return the path without the corners that it can do without."""
-    fixed, k = set(course.time[course.fixed].tolist()), 1
-    while k < len(path[0]) - 1 <= 4 * MOST_CORNERS:
-        shorter = course.fit(np.delete(path[0], k)) if path[0][k] not in fixed else path
-        if shorter is not path and course.holds(shorter):
-            path, k = shorter, max(k - 1, 1)
+        bound = (low[under] - high[over]) / (time[under] - time[over])
+        if under > over:
+            least = bound
         else:
-            k += 1
+            most = bound
+    return bool(floor[under] <= ceiling[over])
+
+
+def _short(tunnel: Tunnel, path: Path, tolerance: float) -> Path:
+    """Return the path on fewer levels and in fewer decimals, as far as no more corners are needed for it."""
+    read = np.isin(path[0], tunnel.time)
+    coarse = max(0, -math.floor(math.log10(tolerance / 2)))
+    for spread in tolerance * np.array([1, 0.5, 0.25, 0.125, 0.0]):
+        levels = _levels(path[1], spread)
+        if tunnel.low[0] == tunnel.high[0]:
+            levels[levels == levels[0]] = path[1][0]
+        scatter = float(np.abs(np.interp(tunnel.time, path[0], levels) - tunnel.value).max())
+        cost = min(max(scatter / 2, tolerance / 100), tolerance / 5)
+        for decimals in range(coarse, _MOST_DECIMALS):
+            shorter = np.where(read, path[0], path[0].round(decimals)), levels.round(decimals)
+            if np.abs(shorter[1] - levels).max() <= cost and (np.diff(shorter[0]) > 0).all():
+                shorter = tunnel.inside(shorter)
+                if len(shorter[0]) <= len(path[0]):
+                    return shorter
     return path
 
 
-def _shared(course: Course, path: Path, tolerance: float) -> Path:
-    """Return the path with corners on one level that are within the tolerance of one another, as far as it holds."""
-    times, values = path
-    level = np.arange(len(values))
-    order = np.argsort(values, kind="stable").tolist()
-    lowest = order[0]
-    for corner in order:
-        lowest = lowest if values[corner] - values[lowest] <= tolerance * (1 + SPARE) else corner
-        level[corner] = lowest
-    while True:
-        joined = course.levelled(times, level)
-        at_fault = course.at_fault(joined)
-        shared = at_fault[np.bincount(level)[level[at_fault]] > 1]
-        if not shared.size:
-            return path if at_fault.size else joined
-        level[shared] = len(values) + shared
-
-
-def _rounded(course: Course, path: Path, tolerance: float) -> Path:
-    """Return recorded times and values of corners, in as few decimals as their noise makes sensible."""
-    late = np.interp(path[0], course.time, course.late)
-    times, values = path[0] - late, path[1]
-    cost = min(max(tolerance * (1 + float(course.excess(path).max())) / 2, tolerance / 100), tolerance / 5)
-    slope = np.abs(np.diff(values) / np.diff(path[0]))
-    steepest = np.maximum(np.append(slope, 0.0), np.append(0.0, slope))
-    coarse = max(0, -math.floor(math.log10(tolerance / 2)))
-    read, level = np.isin(path[0], course.time), np.unique(values, return_inverse=True)[1]
-    finer = np.zeros(len(times), dtype=np.int64)
-    while finer.max() < _MOST_DECIMALS:
-        short_times = np.array(
-            [
-                t if at else _short(t, 1, cost / s if s else 1.0, n)
-                for t, at, s, n in zip(times.tolist(), read, steepest, finer.tolist(), strict=True)
-            ]
-        )
-        short_values = np.array(
-            [_short(v, coarse, cost, n) for v, n in zip(values.tolist(), finer.tolist(), strict=True)]
-        )
-        if course.prescribed:
-            short_values[level == level[0]] = course.value[0]
-        at_fault = course.at_fault((short_times + late, short_values))
-        if not at_fault.size:
-            return short_times, short_values
-        finer[np.isin(level, level[at_fault])] += 1
-    return times, values
-
-
-def _short(number: float, coarse: int, cost: float, finer: int) -> float:
-    """Return a number in the fewest decimals, `coarse` or more, that change it by at most `cost`, and `finer` more."""
-    decimals = next(
-        (n for n in range(coarse, _MOST_DECIMALS) if abs(round(number, n) - number) <= cost), _MOST_DECIMALS
-    )
-    return round(number, decimals + finer)
+def _levels(values: Array, spread: float) -> Array:
+    """Return values with the mean of their level in place of each; a level is wide as `spread`."""
+    order = np.sort(values)
+    lowest = [float(order[0])]
+    for value in order.tolist():
+        if value - lowest[-1] > spread:
+            lowest.append(value)
+    level = np.searchsorted(lowest, values, side="right") - 1
+    return np.asarray((np.bincount(level, values) / np.bincount(level))[level])

@@ -215,11 +215,24 @@ def _readings(file: str, data: bytes, column: str | None, columns: Mapping[str, 
         if not LOWEST_C <= level <= HIGHEST_C:
             what = f"{chosen} is {level:g}; an icon keeps to {LOWEST_C:g} to {HIGHEST_C:g} °C".replace("-", "−")
             raise fault("unit", line, what, "correct or remove the reading, if it is an error of the sensor")
-    notes = tuple(f"{file}: {note}" for note in found.notes)
     # From 0 s on, without the stray digits that differences of large times have.
     digits = min(9, math.floor(-math.log10(math.ulp(max(abs(times[0]), abs(times[-1]))))))
     rising = tuple(round(time - times[0], digits) for time in times)
+    notes = tuple(f"{file}: {note}" for note in (*found.notes, *_gap_notes(rising)))
     return Readings(file, chosen, rising, tuple(levels), found.lines[0], notes)
+
+
+def _gap_notes(time_s: tuple[float, ...]) -> list[str]:
+    import numpy as np
+
+    from .polyline import gaps
+
+    steps = np.diff(time_s)
+    begins = np.flatnonzero(gaps(np.array(time_s))).tolist()
+    longest = max(begins, key=lambda row: steps[row], default=0)
+    several = f"{len(begins)} gaps, the longest" if len(begins) > 1 else "a gap"
+    what = f"{several} of {steps[longest]:.6g} s from {time_s[longest]:.6g} s on, without readings"
+    return [f"{what}: the icon goes straight across"] if begins else []
 
 
 def _column(place: str, table: Table, column: str | None) -> str:

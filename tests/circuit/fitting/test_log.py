@@ -42,8 +42,7 @@ def at(row: int, value: float, column: str = "time_s") -> np.ndarray:
     [
         ({"current_A": TIME}, r"the column time_s \(time in s\) is missing; found current_A"),
         (changed(display_C=[32.0] * 99), "unequal lengths: time_s has 100 rows, display_C has 99; cut the longer"),
-        (changed(voltage_V=[np.nan] * 100), "voltage_V holds no number at all; remove the column, or connect"),
-        (changed(display_C=[np.nan] * 100), "display_C holds no number at all; remove the column, or connect"),
+        ({"time_s": TIME, "display_C": [np.nan] * 100}, "no column of a log; needed is .*, with numbers in it; found"),
         (changed(time_s=at(50, 2.0)), "row 51: time_s 2 s .* after 4.9 s; .*increase: this row is out of place"),
         (changed(time_s=at(7, np.nan)), "row 8: time_s is empty; remove the row"),
         (changed(time_s=TIME * 1000), "steps of 100 over 9900: these look like milliseconds; divide the column by"),

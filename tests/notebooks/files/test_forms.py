@@ -278,7 +278,7 @@ REFUSED: dict[str, tuple[str | bytes, str, Cure]] = {
     "mixed": ("\n".join([HEAD, *random.Random(1).sample(ROWS, 60)]), "are mixed: sort them", in_order),
     "out of place": (written(change=(r"\n2,", "\n0.2,")), "this row is out of place: remove it",
         edited(r"\n0\.2,0.3,\S*", "")),
-    "restarted": ("\n".join([HEAD, *ROWS, *ROWS]), "each recording its own file",
+    "restarted": ("\n".join([HEAD, *ROWS, *(f"{row}1" for row in ROWS)]), "each recording its own file",
         lambda text: "\n".join(text.split("\n")[:61])),
     "decimal commas": (written(comma=True), "put semicolons", lambda _: written(comma=True, mark=";").decode()),
     "thousands": (written(mark=";", change=(r"\n5;[^;]*", "\n5;0.000.500")), "marks between thousands",
