@@ -6,10 +6,7 @@ stands above the names, lines that begin with #, and the line by which spreadshe
 
 from __future__ import annotations
 
-import contextlib
 import csv
-import io
-import itertools
 import math
 import re
 from collections import Counter
@@ -19,7 +16,21 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from ..checks.arguments import InputError
-from .column_names import NamedHeader, meant, named, unit_of
+from .column_choice import chosen, stated_rate, stated_unit
+from .column_names import NamedHeader, parted, unit_of
+from .labelled_lines import labelled_rows, parted_cells
+from .layout import (
+    COMMENTS,
+    LONGEST_CELL,
+    LONGEST_FOOT,
+    NOTHINGS,
+    WITH_UNIT,
+    Layout,
+    is_number,
+    layout_of,
+    rows_of,
+    with_units,
+)  # fmt: skip
 from .table_text import table_text
 
 if TYPE_CHECKING:
@@ -30,21 +41,21 @@ Kind = Literal["table", "size", "cell", "empty", "binary", "time", "unit"]
 Fault = Callable[[Kind, int | None, str, str], InputError]
 """Makes the error for a fault: its kind, the line in the file, what is wrong, and the cure."""
 
-MARKS = ("\t", ",", ";", "|", " ")
-ASIDE = ("#", "sep=")
-NOTHINGS = ("n/a", "na", "#n/a", "nan", "null", "none", "-", "--", "---", "ol", "ovl", "overload")
 OVERLOADS = (9.9e37, 9.91e37)
 """What loggers write for a missing number, and instruments by SCPI for one that is out of range or none."""
 LARGEST = 1e38
 """Beyond what SCPI writes; sums of squares stay finite."""
-NUMBER = re.compile(r"[-+−]?[-\d.,:/]*\d([eE][-+]?\d+)?")
-"""A number or a time of day, as no name of a column is."""
+WHOLE = re.compile(r"[-+−]?\d+")
 QUOTED_DECIMAL = re.compile(r'"[-−]?(\d+,\d{1,2}|0,\d+|\d+,\d{4,})"')
 """Shows that decimals have commas, where commas also separate the cells; 1,234 may be a thousand."""
-WITH_UNIT = re.compile(r"([-+−]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\d\s].*)")
 GROUPED = re.compile(r"[-+−]?\d{1,3}(?:([., ' ])\d{3})+(?:[.,]\d+)?")
-FEW, LONGEST_CELL, MOST_ABOVE, LONGEST_LINE = 8, 60, 200, 10_000
-"""Columns that a message lists, characters of a cell that it quotes; lines, and of each how much, to find names."""
+DATED = re.compile(r"(\d{1,2})[. -]{1,2}([A-Za-zäé]{3})[a-zäé.]*")
+MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
+GERMAN = str.maketrans({"ä": "a", "i": "y", "k": "c", "z": "c"})
+FEW_BAD = 0.05
+"""Larger shares of cells that are no numbers are no slips, so that no row is to be removed."""
+FEW = 8
+"""Columns, lines and cells that a message lists."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +63,7 @@ class Table:
     """Rows of cells below a ``header`` of names; ``lines`` are where they stand in the file, ``line`` the header.
 
     ``names`` says what was renamed, and the units that names in the file say; ``notes`` say what was passed over,
-    ``lost`` by our names what the file does not call as was said.
+    ``lost`` by our names what the file does not call as was said, ``unnamed`` why the names are not those of the rows.
     """
 
     header: tuple[str, ...]
@@ -64,6 +75,7 @@ class Table:
     names: NamedHeader
     notes: tuple[str, ...]
     lost: Mapping[str, str]
+    unnamed: str = ""
 
     @property
     def found(self) -> str:
@@ -105,21 +117,30 @@ class Table:
                 limit = f" of at most {LARGEST:g}" if abs(value) < math.inf else ""
                 quoted = repr(cell if len(cell) <= LONGEST_CELL else f"{cell[:LONGEST_CELL]}…")
                 what = f"{name} is {quoted}, not a finite number{limit}" if cell else f"{name} is empty"
-                raise self.fault("cell", self.lines[row], what, self._cure(name, row, cell) or cure)
+                raise self.fault("cell", self.lines[row], what, self._cure(name, row, cell, cure))
         return values
 
-    def _cure(self, name: str, row: int, cell: str) -> str:
+    def _cure(self, name: str, row: int, cell: str, cure: str) -> str:
+        if date := DATED.fullmatch(cell):
+            month = MONTHS.index(date[2][:3].lower().translate(GERMAN)) + 1
+            return (
+                f"a spreadsheet made dates of numbers: {cell} was {date[1]}.{month}; export the numbers again as text"
+            )
+        bad = sum(math.isnan(as_number(each, self.mark)) for each in self.texts(name))
         if GROUPED.fullmatch(cell):
             return "write numbers without marks between thousands"
         if (found := WITH_UNIT.fullmatch(cell)) and unit_of(found[2]):
             theirs = self.names.renamed.get(name, (name,))[0]
             return f"write {found[1]}; units belong in the names of the columns, as in {theirs} [{found[2]}]"
         alone = len(self.header) > 1 and set(self.rows[row]) <= {"", cell}
-        return "remove this line, which is not a row of the table" if cell and alone else ""
+        if bad > FEW_BAD * len(self.rows) > 1:
+            return f"{bad} of {len(self.rows)} rows have no number there: export it again, or name another column"
+        return "remove this line, which is not a row of the table" if cell and alone else cure
 
 
 def as_number(cell: str, mark: str = ",") -> float:
     """Return the number in a cell, NaN where there is none; a decimal comma counts where ``mark`` is another."""
+    cell = cell.replace("'", "").replace("’", "")
     plain = cell.replace(",", ".") if mark != "," and cell.count(",") == 1 and "." not in cell else cell
     try:
         return math.nan if "_" in plain else float(plain.replace("−", "-"))
@@ -133,54 +154,38 @@ def read_table(
 ) -> Table:  # fmt: skip
     """Return the table in the bytes of a file; raises a fault for rows that do not fit the line of names.
 
-    ``example`` is such a line, for messages. That line is the one that has the most of ``names``, of what means the
-    same, and of what ``theirs`` calls them; where none has any, the first line.
+    ``example`` is such a line, for messages. The names are known by ``names``, by what means the same and by what
+    ``theirs`` calls them, or because they stand above the rows; where no line names the columns, their positions do.
 
     >>> table = read_table(b"a;b\\n1,5;2\\n", lambda *about: ValueError(about), "a,b", 10)
     >>> table.numbers("a", "").tolist(), list(table.records(["b"]))
     ([1.5], [(2, {'b': '2'})])
     """
-    theirs, text = theirs or {}, table_text(data, fault, example)
-    above, mark, skipped = _line_of_names(text, names, theirs)
-    lines = _rows(text, above, mark, fault)
-    line, header = next(lines, (0, [""]))
-    header = [cell.strip('"') for cell in header]
-    if not any(header):
-        raise fault("table", None, "no line names the columns", f"the first line is such as: {example}")
-    if all(not cell or NUMBER.fullmatch(cell) or cell.lower() in NOTHINGS for cell in header):
-        put = example if mark == "," or not header[1:] else f"{len(header)} names such as {example.replace(',', mark)}"
-        raise fault("table", line, "this line holds numbers, not the names of columns", f"put {put} above it")
-    rows, places = list[list[str]](), list[int]()
-    for place, row in lines:
-        if (
-            rows
-            and row[0][:1].isdigit() > header[0][:1].isdigit()
-            and len(row) <= len(header)
-            and len(rows) < most_rows
-        ):
-            rows.append(row)  # neither names again nor a rule
-            places.append(place)
-            continue
-        bare = row[: len(header)]
-        if row[0].startswith(ASIDE) or bare == header or all(set(cell) <= {"-", "=", "*"} for cell in bare):
-            continue  # names that stand again, and rules between pages
-        said = [] if rows else [cell for cell in bare if cell.strip(" ()[]-")]  # a row of units, but for a word
-        if sum(unit_of(cell) is None for cell in said) < 0.5 * len(said) and not re.search(r"\d", "".join(said)):
-            full = {name: f"{name} [{cell.strip(' ()[]')}]" for name, cell in zip(header, bare, strict=False)
-                    if unit_of(cell)}  # fmt: skip
-            header = [full.get(name, name) for name in header]
-            theirs = {name: full.get(cell, cell) for name, cell in theirs.items()}
-            continue
-        if not rows and len(row) == len(header) + 1 and '\n"1"' in text:
-            header.insert(0, "")  # R names no column of row numbers
-        if any(row[len(header) :]):
-            what = f"{len(row)} cells, where the first line names {len(header)}"
-            help = "write decimal points, put names with commas in quotes, or put semicolons between the cells"
-            raise fault("table", place, what, help)
-        rows.append(row)
-        places.append(place)
-        if len(rows) > most_rows:
-            raise fault("size", None, f"more than {most_rows:,} rows", "split the file, or keep every tenth reading")
+    theirs, (text, coding) = theirs or {}, table_text(data, fault, example)
+    notes, line, mark, unnamed = list[str](), 0, ",", ""
+    if labelled := labelled_rows(text):
+        header, rows, places = labelled
+        line = places[0]
+    else:
+        layout = layout_of(text, names, theirs)
+        if not (layout.names or layout.width):
+            raise fault("table", None, "no line names the columns", f"the first line is such as: {example}")
+        header, rows, places, left = _read(text, layout, fault, most_rows)
+        line, mark = layout.line, layout.mark
+        lacking = layout.width - len(layout.names) if layout.names and header[0] == "1" else 0
+        if lacking and mark == "," and rows and _with_decimals(rows, lacking):
+            header = with_units(layout.names, layout.units)
+        elif lacking:
+            line, unnamed = 0, f"{layout.width} cells in each row, where the line of names has {len(layout.names)}"
+            commas = mark == "," and "." not in "".join(rows[0])
+            unnamed += "; if these are decimal commas, put semicolons between the cells" * commas
+        notes = _left_out(layout, [*left, *((0, cells) for cells in layout.units if not any(map(unit_of, cells)))])
+    if not labelled and text.lstrip().startswith(("{", "[{", "[\n{")):
+        raise fault("binary", None, "this is JSON, not a table", "write its records as CSV")
+    if len(rows) > most_rows:
+        raise fault("size", None, f"more than {most_rows:,} rows", "split the file, or keep every tenth reading")
+    header = parted_cells(header, rows)
+    theirs = {name: _column(cell, header) for name, cell in theirs.items()}
     if not header[0] and rows and ":" in rows[0][0]:
         header[0] = "Time"  # PicoLog leaves the name of its clock empty
     firsts = dict[str, int]()
@@ -188,11 +193,19 @@ def read_table(
         first = firsts.setdefault(name, at)
         if name and rows and first < at and all(row[first : first + 1] == row[at : at + 1] for row in rows):
             header[at] = ""  # SPICE programs and LabVIEW may write their times beside each column
-    ours = named(header, names, theirs)
+    notes += [f"the text was read as {coding}"] if coding else []
+    above = "" if labelled or "time_s" not in names else "\n".join(layout.above)
+    rate = stated_rate(above)
+    if len(header) - header.count("") == 1 and rows:
+        stated = "" if parted(header[0])[1] else stated_unit(above)
+        header[0] += f" [{stated}]" if stated else ""
+        if rows[0][0] == str(len(rows) - 1):  # the number of the rows stands above them
+            del rows[0], places[0]
+    ours = chosen(header, rows, names, theirs, rate, notes)
+    places = places[len(places) - len(rows) :]
     for name, (own, unit) in ours.renamed.items():
         if unit.ours not in ("", name.rpartition("_")[2]) and "_" in name:
             raise fault("unit", line, f"{own!r} is in another unit than {name}", "name another column")
-    notes = [f"lines above the names were passed over: {skipped}"] if skipped else []
     read = [f"{name} from {own!r}" for name, (own, unit) in ours.renamed.items()
             if theirs.get(name) != own or unit[1:] != (1, 0)]  # fmt: skip
     notes += [f"read {', '.join(read[:FEW])}{', …' if len(read) > FEW else ''}"] if read else []
@@ -201,54 +214,73 @@ def read_table(
     notes += [missed] if absent else []
     decimal = "" if mark == "," and QUOTED_DECIMAL.search(text) else mark
     lost = dict.fromkeys(absent, missed)
-    return Table(ours.header, line, tuple(rows), tuple(places), fault, decimal, ours, tuple(notes), lost)
+    return Table(ours.header, line, tuple(rows), tuple(places), fault, decimal, ours, tuple(notes), lost, unnamed)
 
 
-def _line_of_names(text: str, names: Sequence[str], theirs: Mapping[str, str]) -> tuple[int, str, int]:
-    """The number of lines above the names, the separator of cells, and how many of those lines have text."""
-    lines = [line[:LONGEST_LINE] for line in itertools.islice(io.StringIO(text), MOST_ABOVE)]
-    head = max((at for at, line in enumerate(lines) if line.startswith("***End_of_Header***")), default=-1)
-    first = next((at for at, line in enumerate(lines) if line.strip() and not line.startswith(ASIDE)), len(lines))
-    best, place, mark = 0.0, first, ""
-    for each in MARKS:
-        rows = list[tuple[int, list[str]]]()
-        with contextlib.suppress(csv.Error):
-            rows.extend(_cells((line.lstrip("# ") for line in lines), each))
-        for (at, cells), (_, below) in itertools.pairwise([*rows, (0, [])]):
-            known = {cell for cell in cells if cell in names or cell in theirs.values()}
-            words = [cell for cell in cells if len(cell) <= LONGEST_CELL]
-            score = float(len(known.union(found[0] for cell in words if (found := meant(cell, names)))))
-            numbers = any(map(NUMBER.fullmatch, words))
-            fits = not numbers and len(below) - len(cells) in (0, 1) and len(below) > 1
-            score = score + 0.5 * fits - 0.9 * numbers if score and (fits or each != " ") else 0.0
-            if score > best and at > head:
-                best, place, mark = score, at, each
-    if not best:
-        line = "".join(lines[first : first + 1])
-        mark = max(MARKS[:-1], key=line.count) if any(one in line for one in MARKS[:-1]) else " "
-    return place, mark, sum(bool(line.strip()) and not line.startswith(ASIDE) for line in lines[:place])
-
-
-def _cells(lines: Iterator[str], mark: str) -> Iterator[tuple[int, list[str]]]:
-    """Rows that are not empty, each with the number of lines above it."""
-    if mark == " ":
-        lines, mark = ("\t".join(line.split()) for line in lines), "\t"
-    reader, above = csv.reader(lines, delimiter=mark), 0
-    for row in reader:
-        cells = [" ".join(cell.split()) if "\n" in cell else cell.strip() for cell in row]
-        if any(cells):
-            yield above, cells
-        above = reader.line_num
-
-
-def _rows(text: str, above: int, mark: str, fault: Fault) -> Iterator[tuple[int, list[str]]]:
-    """Rows that are not empty, each with its line in the file, from the line of names on."""
-    place, stream = above + 1, itertools.islice(io.StringIO(text), above, None)
-    first = next(stream, "")
-    lines = itertools.chain([first.lstrip("# ") if first.startswith("#") else first], stream)
+def _read(
+    text: str, layout: Layout, fault: Fault, most_rows: int
+) -> tuple[list[str], list[list[str]], list[int], list[tuple[int, list[str]]]]:
+    """Names, rows and their lines, and the lines below the names that are no rows; raises a fault for a misfit."""
+    header, rows, places = [cell.strip('"') for cell in layout.names], list[list[str]](), list[int]()
+    header = with_units(header, layout.units)
+    if layout.width == len(header) + 1 and '\n"1"' in text:
+        header.insert(0, "")  # R names no column of row numbers
+    if len(header) < layout.width and (layout.key or not header):
+        header = [str(at + 1) for at in range(layout.width)]
+    left, place = list[tuple[int, list[str]]](), layout.start
     try:
-        for at, cells in _cells(lines, mark):
-            place = above + at + 1
-            yield place, cells
+        for place, row, good in rows_of(layout, text):
+            if row == layout.names or row in layout.units:
+                continue
+            if not good:
+                left.append((place, row))
+            elif any(row[len(header) :]):
+                what = f"{len(row)} cells, where the first line names {len(header)}"
+                help = "write decimal points, put names with commas in quotes, or put semicolons between the cells"
+                raise fault("table", place, what, help)
+            else:
+                rows.append(row)
+                places.append(place)
+                if len(rows) > most_rows:
+                    break
     except csv.Error as problem:
         raise fault("table", place + 1, f"this row cannot be read ({problem})", "save it as CSV") from None
+    foot = layout.key[0] if layout.key else 0
+    while len(rows) > 1 and layout.key and len(left) < LONGEST_FOOT and _is_word(rows[-1][foot : foot + 1]):
+        left.append((places.pop(), rows.pop()))
+    return header, rows, places, left
+
+
+def _is_word(cells: Sequence[str]) -> bool:
+    return bool(cells and cells[0] and cells[0].lower() not in NOTHINGS and not is_number(cells[0]))
+
+
+def _left_out(layout: Layout, left: Sequence[tuple[int, list[str]]]) -> list[str]:
+    """Notes on the lines that are no rows: above the names, and among or below the rows."""
+    above = sum(bool(line.strip()) and not line.startswith(COMMENTS) for line in layout.above)
+    notes = [f"lines above the names were passed over: {above}"] if above else []
+    if left:
+        quoted = ", ".join(repr(layout.mark.join(row)[:LONGEST_CELL]) for _, row in sorted(left)[:3])
+        notes.append(f"lines that are no rows were left out: {len(left)} ({quoted})")
+    return notes
+
+
+def _column(cell: str, header: Sequence[str]) -> str:
+    """The column that a user means by its name, by its name without a unit, or by its position, counted from 1."""
+    if cell in header or (cell.isdecimal() and 1 <= int(cell) <= len(header)):
+        return cell if cell in header else header[int(cell) - 1] or cell
+    bare = [name for name in header if cell.lower() in (name.lower(), name.partition(" [")[0].lower())]
+    return bare[0] if len(bare) == 1 else cell
+
+
+def _with_decimals(rows: Sequence[list[str]], lacking: int) -> bool:
+    """Join whole numbers with the digits behind their decimal commas, where that leaves as many cells as names."""
+    pairs = [at for at in range(min(map(len, rows)) - 1)
+             if all(WHOLE.fullmatch(row[at]) and row[at + 1].isdecimal() and len(row[at + 1]) == len(rows[0][at + 1])
+                    for row in rows)]  # fmt: skip
+    if len(pairs) != lacking:
+        return False
+    for row in rows:
+        for at in reversed(pairs):
+            row[at : at + 2] = [f"{row[at]}.{row[at + 1]}"]
+    return True

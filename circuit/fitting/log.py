@@ -17,7 +17,6 @@ from thermicon.base.files.measured_table import measured, missing
 from thermicon.base.files.table import read_table
 from thermicon.base.files.units import like_units_of_time, unit_fault
 from thermicon.base.numbers.arrays import Array
-from thermicon.base.words.near_words import nearest_words
 
 from .keys import FitError
 
@@ -165,8 +164,6 @@ def _check_times(name: str, time: Array) -> None:
 MOST_MB = 200.0
 NAMES = ("time_s", *DRIVES, *MEASURED)
 CURE = "leave the cell empty"
-MISSPELT = 0.85
-"""A name of a column that is so much alike a known one, and of its unit, is taken for a slip of the pen."""
 
 
 def read_log(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None = None) -> Log:
@@ -190,12 +187,6 @@ def read_log(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None 
         where, data = Path("table"), path.to_csv(index=False).encode()
     table = read_table(data, table_fault(where, LogError), "time_s,current_A,…", MOST_ROWS, NAMES, columns)
     wanted = [name for name in dict.fromkeys(table.header) if is_known(name)]
-    absent = {name.lower(): name for name in NAMES if name not in table.header}
-    for cell in table.header:
-        close = "" if is_known(cell) else absent.get("".join(nearest_words(cell.lower(), absent, 1, MISSPELT)), "")
-        if close and cell[-2:] == close[-2:]:
-            what, cure = f"{cell}: did you mean {close}? Found {table.found}", "remove the column, or say so"
-            raise table.fault("table", table.line, what, cure).to(columns={close: cell})
     if table.names.doubtful or not wanted:
         raise missing(table, "display_C", f"one of {', '.join(NAMES[1:])}")
     found = measured(table, wanted, CURE)

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Literal
 
 from thermicon.base.checks.arguments import InputError, checked
-from thermicon.base.files.measured_table import measured, missing
+from thermicon.base.files.column_choice import is_setting
+from thermicon.base.files.measured_table import candidates, measured, missing
 from thermicon.base.files.table import Table, read_table
 from thermicon.base.files.units import like_units_of_time
 from thermicon.base.words.clean_text import name_fault
@@ -203,7 +204,7 @@ def _readings(file: str, data: bytes, column: str | None, columns: Mapping[str, 
     theirs = {**(columns or {}), **({"temperature_C": own} if own else {})}
     table = read_table(data, fault, EXAMPLE, MOST_ROWS, NAMES, theirs)
     given = next((name for name in theirs if name in CONTROL_OF and name in table.names.renamed), column)
-    chosen = _column(f"{file}:{table.line}", table, given)
+    chosen = _column(f"{file}:{table.line}", table, given, columns)
     found = measured(table, [chosen], _CURE, gaps=False, steps=True)
     times, levels = found.time_s.tolist(), found.columns[chosen].tolist()
     if (length := times[-1] - times[0]) > LONGEST_S:
@@ -222,14 +223,17 @@ def _readings(file: str, data: bytes, column: str | None, columns: Mapping[str, 
     return Readings(file, chosen, rising, tuple(levels), found.lines[0], notes)
 
 
-def _column(place: str, table: Table, column: str | None) -> str:
+def _column(place: str, table: Table, column: str | None, columns: Mapping[str, str] | None) -> str:
+    if lost := [name for name in columns or {} if name in table.lost]:
+        raise table.fault("table", table.line or None, table.lost[lost[0]], "the name must be spelled as in the file")
     known = [cell for cell in table.header if cell in CONTROL_OF]
-    if column is None and len(known) > 1:
+    readings = [name for name in known if not is_setting(name.rpartition("_")[0])]
+    if column is None and len(known) > 1 and len(readings) != 1:
         what = f"{' and '.join((', '.join(known[:-1]), known[-1]))} are all temperatures"
-        raise whole_file("E013", place, what, "say which").to(column=known[0])
-    if column is None and not known:
+        raise whole_file("E013", place, what, "say which").to(column=[*readings, *known][0])
+    if column is None and not readings and (not known or candidates(table, "temperature_C")):
         raise missing(table, "temperature_C", f"or {', '.join(list(CONTROL_OF)[1:])}")
-    chosen = column or known[0]
+    chosen = column or (readings or known)[0]
     if chosen not in table.header or chosen == TIME:
         what = f"no temperature is called {chosen!r}; found {table.found}"
         raise whole_file("E013", place, what, "the name must be spelled as in the file")

@@ -12,7 +12,8 @@ import numpy as np
 
 from thermicon.base.checks.arguments import checked
 from thermicon.base.files.inputs import InputError, line_fault, quoted, read_bytes, table_fault
-from thermicon.base.files.table import NOTHINGS, Table, as_number, read_table
+from thermicon.base.files.layout import NOTHINGS
+from thermicon.base.files.table import Table, as_number, read_table
 from thermicon.base.numbers.arrays import Array
 from thermicon.base.words.near_words import did_you_mean, nearest_words
 from thermicon.icons import IconSet
