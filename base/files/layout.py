@@ -128,6 +128,8 @@ def _judged(
     told = [at for at, (_, cells) in enumerate(rows) if not (cells[0].startswith(COMMENTS) or is_rule(cells))]
     pairs = itertools.zip_longest(told, told[1:])
     first = next((at for at, after in pairs if exact[at] and (after is None or alike[after])), len(rows))
+    while first and shares[first - 1] == 1 and 1 < len(rows[first - 1][1]) < width:  # rows that end early
+        first -= 1
     row = rows[first][1] if first < len(rows) else []
     named = [(*_names(cells, width, names, theirs, lines[above : above + 1], row, mark), at)
              for at, (above, cells) in enumerate(rows[:first])]  # fmt: skip

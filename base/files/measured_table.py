@@ -64,7 +64,7 @@ def missing(table: Table, name: str, what: str) -> InputError:
     several = [(each, cells) for each, cells in theirs.items() if len(cells) > 1]
     for each, cells in several:
         said += f"; {' and '.join(cells[:FEW])} may be {each}"
-    known = {each: cells[0] for each, cells in theirs.items() if cells}
+    known = {each: cells[0] for each, cells in theirs.items() if cells and theirs[first]}
     return table.fault("table", table.line or None, said, "say which it is").to(columns=known or {first: "THEIRS"})
 
 

@@ -45,7 +45,7 @@ OVERLOADS = (9.9e37, 9.91e37)
 """What loggers write for a missing number, and instruments by SCPI for one that is out of range or none."""
 LARGEST = 1e38
 """Beyond what SCPI writes; sums of squares stay finite."""
-WHOLE = re.compile(r"[-+−]?\d+")
+WHOLE, POINT = re.compile(r"[-+−]?\d+"), re.compile(r"[-+−]?\d*\.\d+")
 QUOTED_DECIMAL = re.compile(r'"[-−]?(\d+,\d{1,2}|0,\d+|\d+,\d{4,})"')
 """Shows that decimals have commas, where commas also separate the cells; 1,234 may be a thousand."""
 GROUPED = re.compile(r"[-+−]?\d{1,3}(?:([., ' ])\d{3})+(?:[.,]\d+)?")
@@ -121,11 +121,10 @@ class Table:
         return values
 
     def _cure(self, name: str, row: int, cell: str, cure: str) -> str:
-        if date := DATED.fullmatch(cell):
-            month = MONTHS.index(date[2][:3].lower().translate(GERMAN)) + 1
-            return (
-                f"a spreadsheet made dates of numbers: {cell} was {date[1]}.{month}; export the numbers again as text"
-            )
+        date = DATED.fullmatch(cell)
+        if date and (month := date[2].lower().translate(GERMAN)) in MONTHS:
+            was = f"{cell} was {date[1]}.{MONTHS.index(month) + 1}"
+            return f"a spreadsheet made dates of numbers: {was}; export the numbers again as text"
         bad = sum(math.isnan(as_number(each, self.mark)) for each in self.texts(name))
         if GROUPED.fullmatch(cell):
             return "write numbers without marks between thousands"
@@ -278,7 +277,7 @@ def _with_decimals(rows: Sequence[list[str]], lacking: int) -> bool:
     pairs = [at for at in range(min(map(len, rows)) - 1)
              if all(WHOLE.fullmatch(row[at]) and row[at + 1].isdecimal() and len(row[at + 1]) == len(rows[0][at + 1])
                     for row in rows)]  # fmt: skip
-    if len(pairs) != lacking:
+    if len(pairs) != lacking or any(POINT.fullmatch(cell) for row in rows for cell in row):
         return False
     for row in rows:
         for at in reversed(pairs):

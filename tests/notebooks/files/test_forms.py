@@ -336,7 +336,10 @@ def test_units_in_a_line_of_their_own_do_not_hide_what_a_column_is_called(tmp_pa
 def examine(seed: int) -> tuple[float, float, list[str]]:
     """Read damaged tables; the slowest in s, the memory in GB, and what was no sentence."""
     rng, wrong, slowest = random.Random(f"tables {seed}"), list[str](), 0.0
-    tables = [*FORMS.values(), *(data if isinstance(data, bytes) else data.encode() for data, _, _ in REFUSED.values())]
+    from tests.notebooks.files.instrument_forms import FORMS as MORE
+
+    made = [*FORMS.values(), *(data for data, _, _ in REFUSED.values()), *(each.text for each in MORE)]
+    tables = [data if isinstance(data, bytes) else data.encode() for data in made]
     with TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         for _ in range(500):

@@ -19,9 +19,7 @@ SCALES = {
     "divide by 1000": (0.001, 0.0), "divide by 100": (0.01, 0.0), "divide by 10": (0.1, 0.0),
 }  # fmt: skip
 """What cures do to the numbers of a temperature."""
-ELSEWHERE = (
-    "export|save |convert|write numbers|write times|add the times|put semicolons|own file|sort them|line is such"
-)
+ELSEWHERE = "export|save |convert|write numbers|write times|add the times|put semicolons|own file|sort them|line is"
 """Cures for which a person needs another program, or another file."""
 
 
