@@ -54,6 +54,7 @@ MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", 
 GERMAN = str.maketrans({"ä": "a", "i": "y", "k": "c", "z": "c"})
 FEW_BAD = 0.05
 """Larger shares of cells that are no numbers are no slips, so that no row is to be removed."""
+DECIMALS = "; where these are decimal commas, write decimal points, or put semicolons between the cells"
 FEW = 8
 """Columns, lines and cells that a message lists."""
 
@@ -175,9 +176,9 @@ def read_table(
         if lacking and mark == "," and rows and _with_decimals(rows, lacking):
             header = with_units(layout.names, layout.units)
         elif lacking:
-            line, unnamed = 0, f"{layout.width} cells in each row, where the line of names has {len(layout.names)}"
+            line, unnamed = 0, f"rows have {layout.width} cells, where the line of names has {len(layout.names)}"
             commas = mark == "," and "." not in "".join(rows[0])
-            unnamed += "; if these are decimal commas, put semicolons between the cells" * commas
+            unnamed += DECIMALS * commas
         notes = _left_out(layout, [*left, *((0, cells) for cells in layout.units if not any(map(unit_of, cells)))])
     if not labelled and text.lstrip().startswith(("{", "[{", "[\n{")):
         raise fault("binary", None, "this is JSON, not a table", "write its records as CSV")
