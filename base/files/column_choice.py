@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
-from .column_names import UNITS, NamedHeader, named, parted, unit_of
+from .column_names import NamedHeader, named, parted, unit_of
 from .layout import NOTHINGS, NUMBER, VALUE, is_clock
 
 TIME = "time_s"
@@ -34,6 +34,18 @@ def is_setting(name: str) -> bool:
     (True, False)
     """
     return SETTING.search(name) is not None
+
+
+def is_reading(name: str, unit: str, header: Sequence[str]) -> bool:
+    """Whether a column says a unit that ends our names, and may be of a display or skin.
+
+    >>> is_reading("Plate (°C)", "C", ()), is_reading("Room (°C)", "C", ()), is_reading("Ch A", "A", ("Ch B",))
+    (True, False, False)
+    """
+    own = parted(name)[1] or (unit_of(name) if len(name) > 1 else None)
+    lettered = any(other[:-1] == name[:-1] for other in header if other != name)  # channels A, B and C
+    elsewhere = is_setting(name) or ELSEWHERE.search(name) or PROBE.fullmatch(name)
+    return own is not None and own.ours == unit and not (elsewhere or lettered)
 
 
 def stated_rate(text: str) -> tuple[float, str] | None:
@@ -95,10 +107,7 @@ def chosen(
         name = next((name for name in names if name in wanted), "")
         vague = {each for each, cells in ours.doubtful.items() if not any(parted(cell)[1] for cell in cells)}
         there = {*ours.header, *ours.doubtful, *theirs} - vague
-        alike = [header[at] for at in free if header[at] and (own := parted(header[at])[1] or unit_of(header[at]))
-                 and own.ours == unit and (header[at] not in UNITS or len(header[at]) > 1)
-                 and not (is_setting(header[at]) or ELSEWHERE.search(header[at]) or header[at] in names
-                          or PROBE.fullmatch(header[at]))]  # fmt: skip
+        alike = [header[at] for at in free if is_reading(header[at], unit, header) and header[at] not in names]
         if name and not there & set(wanted) and len(alike) == 1:
             guesses[name] = alike[0]
             notes.append(f"{alike[0]!r} is taken as {name}, as the only column in {'°C' if unit == 'C' else unit}")

@@ -122,7 +122,8 @@ def _judged(
     for (_, cells), share in zip(rows, shares, strict=True):
         sizes[len(cells)] += share * (1 if share == 1 else 0.999)  # type: ignore[assignment]
     width = max(sizes, key=lambda size: (sizes[size], size), default=0) if any(shares) else 0
-    alike = [share > 0 and len(cells) <= width and not _is_stamped(cells)
+    words = {word for word in (*names, *theirs.values()) if not is_number(word)}
+    alike = [share > 0 and len(cells) <= width and not _is_stamped(cells) and words.isdisjoint(cells)
              for (_, cells), share in zip(rows, shares, strict=True)]  # fmt: skip
     exact = [good and len(cells) == width for good, (_, cells) in zip(alike, rows, strict=True)]
     told = [at for at, (_, cells) in enumerate(rows) if not (cells[0].startswith(COMMENTS) or is_rule(cells))]

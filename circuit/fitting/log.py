@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermicon.base.files.clock import order_fault
+from thermicon.base.files.column_choice import is_reading
 from thermicon.base.files.inputs import read_bytes, table_fault
 from thermicon.base.files.measured_table import measured, missing
 from thermicon.base.files.table import read_table
@@ -187,7 +188,8 @@ def read_log(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None 
         where, data = Path("table"), path.to_csv(index=False).encode()
     table = read_table(data, table_fault(where, LogError), "time_s,current_A,…", MOST_ROWS, NAMES, columns)
     wanted = [name for name in dict.fromkeys(table.header) if is_known(name)]
-    if table.names.doubtful or not wanted:
+    blind = not any(name.endswith("_C") for name in wanted)
+    if table.names.doubtful or not wanted or (blind and any(is_reading(cell, "C", ()) for cell in table.header)):
         raise missing(table, "display_C", f"one of {', '.join(NAMES[1:])}")
     found = measured(table, wanted, CURE)
     unused = ", ".join([name for name in table.header if name not in ("time_s", "icon", "", *wanted)][:8])

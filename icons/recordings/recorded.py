@@ -36,6 +36,8 @@ NAMES = (TIME, *CONTROL_OF)
 
 MOST_ROWS, MOST_MB = 1_000_000, 200
 """Rows of a recording, about five minutes at 3 kHz, and room for them with many further columns."""
+SHORTEST_READ_S = 0.01
+"""Nothing that is shorter is a course on skin: its times are in another unit, or have too few digits."""
 EXAMPLE = f"{TIME},temperature_C"
 _CURE = "fill it in, or remove the row; between readings the course is taken as linear"
 _CODES = {"table": "E013", "size": "E004", "cell": "E014", "empty": "E005", "binary": "E006",
@@ -212,6 +214,8 @@ def _readings(file: str, data: bytes, column: str | None, columns: Mapping[str, 
         help = f"if these are {like[0]}, {like[1]}; otherwise cut the file" if like else "cut the file"
         what = f"{TIME} runs over {length:,.6g} s"
         raise whole_file("E221", file, what, f"an icon lasts at most {LONGEST_S:g} s; {help}")
+    if length < SHORTEST_READ_S:
+        raise table.fault("time", None, f"{TIME} runs over {length:g} s", "check the unit of the times")
     for line, level in zip(found.lines, levels, strict=True):
         if not LOWEST_C <= level <= HIGHEST_C:
             what = f"{chosen} is {level:g}; an icon keeps to {LOWEST_C:g} to {HIGHEST_C:g} °C".replace("-", "−")
