@@ -44,12 +44,12 @@ def table_text(data: bytes, fault: Fault, example: str) -> tuple[str, str]:
     """
     if not data.strip():
         raise fault("empty", None, "the file is empty", f"the first line is such as: {example}")
+    for begin, kind in MAGIC.items():
+        if (data.startswith(begin) and b"\0" in data[:4000]) or (begin == b"\x93NUMPY" and b".npy" in data[:100]):
+            cure = "open it in Python or MATLAB, and write times and temperatures as CSV, such as by DataFrame.to_csv"
+            raise fault("binary", None, f"this is {kind}, not a table", cure)
     for begin, (kind, cure) in OTHERS.items():
         if data.lstrip().startswith(begin):
-            raise fault("binary", None, f"this is {kind}, not a table", cure)
-    for begin, kind in MAGIC.items():
-        if data.startswith(begin) and b"\0" in data[:4000]:
-            cure = "open it in Python or MATLAB, and write times and temperatures as CSV, such as by DataFrame.to_csv"
             raise fault("binary", None, f"this is {kind}, not a table", cure)
     if wrong := other_kind(data[:HEAD].decode("utf-8", "replace"), "table"):
         raise fault("binary", None, *wrong)
