@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from tests.notebooks.files.instrument_forms import FORMS, MET, Form, right
-from tests.notebooks.files.test_forms import REFUSED
+from tests.notebooks.files.test_forms import DOORS, REFUSED, outcome
 from thermicon.icons.recordings.recorded import Readings, read_readings
 from thermicon.notebooks.messages import is_ours
 
@@ -32,7 +32,12 @@ def obeyed(said: str, text: str, options: Options) -> tuple[str, Options]:
         return text, {**options, "columns": {**options.get("columns", {}), **columns}}
     if found := re.search(r"call their column (time \(\w+\))", said):
         return re.sub(r"(?i)\btime\b *\(?\w*\)?", found[1], text, count=1), options
-    if found := re.search(r":(\d+) .*remove (?:this line|it|the row)", said):
+    if found := re.search(r"(\w+_[AV]) reaches .* divide it by 1000", said):
+        head, *rows = (line.split(",") for line in text.strip().split("\n"))
+        at = head.index(found[1])
+        changed = ([*row[:at], f"{float(row[at]) / 1000:.9g}", *row[at + 1 :]] for row in rows)
+        return "\n".join(",".join(row) for row in (head, *changed)), options
+    if found := re.search(r":(\d+)[: ].*remove (?:this line|it|the row)", said):
         lines = text.split("\n")
         del lines[int(found[1]) - 1 - ("the row before" in said)]
         return "\n".join(lines), options
@@ -94,9 +99,19 @@ def test_a_table_that_was_met_is_read_or_its_cause_is_named_and_its_cure_works(t
     assert len(set(said)) == len(said) and (said[-1] == "" or re.search(ELSEWHERE, said[-1])), said
 
 
+@pytest.mark.parametrize("door", DOORS)
 @pytest.mark.parametrize("name", REFUSED)
-def test_a_cure_of_a_refused_table_leads_to_the_numbers_or_to_another_cause(tmp_path: Path, name: str) -> None:
-    data = REFUSED[name][0]
-    text = data.decode("utf-8", "replace") if isinstance(data, bytes) else data
-    said = attempts(tmp_path / "a.csv", Form("", name, "", {}, "", 0.1, text))
+def test_a_cure_of_a_refused_table_leads_to_the_numbers_or_to_another_cause(
+    tmp_path: Path, name: str, door: str
+) -> None:
+    data, path = REFUSED[name][0], tmp_path / "a.csv"
+    text, options = data.decode("utf-8", "replace") if isinstance(data, bytes) else data, Options()
+    said = list[str]()
+    for _ in range(3):
+        path.write_text(text, "utf-8")
+        good, told = outcome(DOORS[door], path, options.get("columns", {}))
+        said.append("" if good else told)
+        if good or re.search(ELSEWHERE, told):
+            break
+        text, options = obeyed(told, text, options)
     assert len(set(said)) == len(said) and (said[-1] == "" or re.search(ELSEWHERE, said[-1])), said
