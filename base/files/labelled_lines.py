@@ -110,7 +110,7 @@ def parted_cells(header: list[str], rows: list[list[str]]) -> list[str]:
             continue
         found = [WITH_UNIT.fullmatch(cell) for cell in there]
         units = {each[2] for each in found if each}
-        if None in found or len(units) != 1 or unit_of(unit := next(iter(units))) is None:
+        if found.count(None) > (1 - MOST) * len(found) or len(units) != 1 or unit_of(unit := next(iter(units))) is None:
             continue
         header[at] = f"{header[at]} [{unit}]"
         for row in rows:

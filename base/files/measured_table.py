@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 TIME, ROW = "time_s", "remove the row"
 ON_DISPLAY = ("temperature_C", "display_C", "skin_C")
+MOST_ALIKE = 0.95
+"""The part of a column's cells that must be such as one of ours has, to be proposed."""
 UNPADDED = re.compile(r"\d+[.,]\d{1,3}")
 """Seconds, a point, and the milliseconds as a whole number, as sketches print them."""
 CLOCK_CURE = "write times as seconds from any start, or as 2026-03-02 23:59:58.050"
@@ -88,14 +90,15 @@ def _may_be(name: str, table: Table, cell: str) -> bool:
 
     step = max(len(table.rows) // 200, 1)
     values = np.array([as_number(text, table.mark) for text in list(table.texts(cell))[::step]])
-    if not np.isfinite(values).all():
+    sound = values[np.isfinite(values)]
+    if len(sound) < MOST_ALIKE * len(values) or len(sound) < 2:
         return False
-    rising = bool((np.diff(values) > 0).all())
-    if name == TIME or rising or not np.ptp(values):
+    rising = bool((np.diff(sound) > 0).mean() >= MOST_ALIKE)
+    if name == TIME or rising or not np.ptp(sound):
         return name == TIME and rising
     low, high = ON_SKIN_C if name.endswith("_C") else USUAL_A
-    values -= 273.15 * (name.endswith("_C") and values.min() > 273.15)
-    return bool(low <= values.min() and values.max() <= high)
+    sound = sound - 273.15 * (name.endswith("_C") and np.median(sound) > 273.15)
+    return bool(((sound >= low) & (sound <= high)).mean() >= MOST_ALIKE)
 
 
 def measured(
