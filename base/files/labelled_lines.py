@@ -34,9 +34,10 @@ def labelled_rows(text: str) -> tuple[list[str], list[list[str]], list[int]] | N
     tried = [line for line in lines[: 4 * TRIED] if line.strip()][:TRIED]
     for reader in (_of_object, _of_labels):
         sets = [tuple(read) for line in tried if (read := reader(line))]
-        if not sets or sets.count(sets[-1]) < MOST * len(tried):
+        usual = max(set(sets), key=sets.count, default=())
+        if sets.count(usual) < max(MOST * len(tried), 1):
             continue
-        rows, places, names = list[list[str]](), list[int](), list(sets[-1])
+        rows, places, names = list[list[str]](), list[int](), list(usual)
         for place, line in enumerate(lines, 1):
             read = reader(line)
             if read and set(names) <= set(read):

@@ -162,29 +162,11 @@ def read_table(
     ([1.5], [(2, {'b': '2'})])
     """
     theirs, (text, coding) = theirs or {}, table_text(data, fault, example)
-    notes, line, mark, unnamed = list[str](), 0, ",", ""
-    if labelled := labelled_rows(text):
-        header, rows, places = labelled
-        line = places[0]
-    else:
-        layout = layout_of(text, names, theirs)
-        if not (layout.names or layout.width):
-            raise fault("table", None, "no line names the columns", f"the first line is such as: {example}")
-        header, rows, places, left = _read(text, layout, fault, most_rows)
-        line, mark = layout.line, layout.mark
-        lacking = layout.width - len(layout.names) if layout.names and header[0] == "1" else 0
-        if lacking and mark == "," and rows and _with_decimals(rows, lacking):
-            header = with_units(layout.names, layout.units)
-        elif lacking:
-            line, unnamed = 0, f"rows have {layout.width} cells, where the line of names has {len(layout.names)}"
-            commas = mark == "," and "." not in "".join(rows[0])
-            unnamed += DECIMALS * commas
-        notes = _left_out(layout, [*left, *((0, cells) for cells in layout.units if not any(map(unit_of, cells)))])
-    if not labelled and text.lstrip().startswith(("{", "[{", "[\n{")):
-        raise fault("binary", None, "this is JSON, not a table", "write its records as CSV")
+    content = _labelled(text) or _laid_out(text, layout_of(text, names, theirs), fault, example, most_rows)
+    rows, places, line, notes = content.rows, content.places, content.line, content.notes
     if len(rows) > most_rows:
         raise fault("size", None, f"more than {most_rows:,} rows", "split the file, or keep every tenth reading")
-    header = parted_cells(header, rows)
+    header = parted_cells(content.header, rows)
     theirs = {name: _column(cell, header) for name, cell in theirs.items()}
     if not header[0] and rows and ":" in rows[0][0]:
         header[0] = "Time"  # PicoLog leaves the name of its clock empty
@@ -194,12 +176,13 @@ def read_table(
         if name and rows and first < at and all(row[first : first + 1] == row[at : at + 1] for row in rows):
             header[at] = ""  # SPICE programs and LabVIEW may write their times beside each column
     notes += [f"the text was read as {coding}"] if coding else []
-    above = "" if labelled or "time_s" not in names else "\n".join(layout.above)
-    rate = stated_rate(above)
-    if len(header) - header.count("") == 1 and rows:
-        stated = "" if parted(header[0])[1] else stated_unit(above)
-        header[0] += f" [{stated}]" if stated else ""
-        if rows[0][0] == str(len(rows) - 1):  # the number of the rows stands above them
+    rate = stated_rate(content.above) if "time_s" in names else None
+    named_columns = [at for at, name in enumerate(header) if name]
+    if len(named_columns) == 1 and rows and "time_s" in names:
+        at = named_columns[0]
+        stated = "" if parted(header[at])[1] else stated_unit(content.above)
+        header[at] += f" [{stated}]" if stated else ""
+        if rows[0][at : at + 1] == [str(len(rows) - 1)]:  # the number of the rows stands above them
             del rows[0], places[0]
     ours = chosen(header, rows, names, theirs, rate, notes)
     places = places[len(places) - len(rows) :]
@@ -212,9 +195,56 @@ def read_table(
     absent = {name: f"{own!r}, to be {name}" for name, own in theirs.items() if own not in header}
     missed = f"no column is called {', and none '.join(absent.values())}; found {', '.join(ours.header[:FEW])}"
     notes += [missed] if absent else []
-    decimal = "" if mark == "," and QUOTED_DECIMAL.search(text) else mark
+    decimal = "" if content.mark == "," and QUOTED_DECIMAL.search(text) else content.mark
     lost = dict.fromkeys(absent, missed)
-    return Table(ours.header, line, tuple(rows), tuple(places), fault, decimal, ours, tuple(notes), lost, unnamed)
+    return Table(
+        ours.header, line, tuple(rows), tuple(places), fault, decimal, ours, tuple(notes), lost, content.unnamed
+    )
+
+
+@dataclass(slots=True)
+class _Content:
+    """What stands in a text: names, rows and their lines, the line of names, the mark, notes, and the lines above."""
+
+    header: list[str]
+    rows: list[list[str]]
+    places: list[int]
+    line: int
+    mark: str
+    notes: list[str]
+    above: str = ""
+    unnamed: str = ""
+
+
+def _labelled(text: str) -> _Content | None:
+    """The content of a text whose lines name their numbers; None for any other."""
+    if not (found := labelled_rows(text)):
+        return None
+    header, rows, places = found
+    others = sum(map(bool, map(str.strip, text.split("\n")))) - len(rows)
+    notes = [f"lines that do not name {', '.join(header[:FEW])} were left out: {others}"] if others else []
+    return _Content(header, rows, places, places[0], ",", notes)
+
+
+def _laid_out(text: str, layout: Layout, fault: Fault, example: str, most_rows: int) -> _Content:
+    """The content of a text by its layout; raises a fault where it has none."""
+    if text.lstrip().startswith(("{", "[{", "[\n{")):
+        raise fault("binary", None, "this is JSON, not a table", "write its records as CSV")
+    if not (layout.names or layout.width):
+        raise fault("table", None, "no line names the columns", f"the first line is such as: {example}")
+    header, rows, places, left = _read(text, layout, fault, most_rows)
+    notes = _left_out(layout, [*left, *((0, cells) for cells in layout.units if not any(map(unit_of, cells)))])
+    gap = any(places[0] < place < places[-1] for place, _ in left) if places else False
+    above = "" if gap else "\n".join(layout.above)  # a rate says no times where rows are lost
+    content = _Content(header, rows, places, layout.line, layout.mark, notes, above)
+    lacking = layout.width - len(layout.names) if layout.names and header[0] == "1" else 0
+    if lacking and layout.mark == "," and rows and _with_decimals(rows, lacking):
+        content.header = with_units(layout.names, layout.units)
+    elif lacking:
+        content.line = 0
+        content.unnamed = f"rows have {layout.width} cells, where the line of names has {len(layout.names)}"
+        content.unnamed += DECIMALS * (layout.mark == "," and "." not in "".join(rows[0]))
+    return content
 
 
 def _read(
