@@ -1,12 +1,7 @@
-"""The reader of tables: a line of names above rows of cells.
-
-Commas, semicolons, tabs or spaces separate the cells; where it is not commas, decimal commas are numbers too. What
-stands above the names, lines that begin with #, and the line by which spreadsheets name the separator, are passed over.
-"""
+"""The reader of tables: columns by our names, whatever a file calls them and whatever else stands in it."""
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from collections import Counter
@@ -18,19 +13,10 @@ from typing import TYPE_CHECKING, Literal
 from ..checks.arguments import InputError
 from .column_choice import chosen, stated_rate, stated_unit
 from .column_names import NamedHeader, parted, unit_of
-from .labelled_lines import labelled_rows, parted_cells
-from .layout import (
-    COMMENTS,
-    LONGEST_CELL,
-    LONGEST_FOOT,
-    NOTHINGS,
-    WITH_UNIT,
-    Layout,
-    is_number,
-    layout_of,
-    rows_of,
-    with_units,
-)  # fmt: skip
+from .labelled_lines import parted_cells
+from .layout import LONGEST_CELL, NOTHINGS, WITH_UNIT, layout_of
+from .table_content import FEW as FEW
+from .table_content import labelled, laid_out
 from .table_text import table_text
 
 if TYPE_CHECKING:
@@ -45,7 +31,6 @@ OVERLOADS = (9.9e37, 9.91e37)
 """What loggers write for a missing number, and instruments by SCPI for one that is out of range or none."""
 LARGEST = 1e38
 """Beyond what SCPI writes; sums of squares stay finite."""
-WHOLE, POINT = re.compile(r"[-+−]?\d+"), re.compile(r"[-+−]?\d*\.\d+")
 QUOTED_DECIMAL = re.compile(r'"[-−]?(\d+,\d{1,2}|0,\d+|\d+,\d{4,})"')
 """Shows that decimals have commas, where commas also separate the cells; 1,234 may be a thousand."""
 GROUPED = re.compile(r"[-+−]?\d{1,3}(?:([., ' ])\d{3})+(?:[.,]\d+)?")
@@ -54,9 +39,6 @@ MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", 
 GERMAN = str.maketrans({"ä": "a", "i": "y", "k": "c", "z": "c"})
 FEW_BAD = 0.05
 """Larger shares of cells that are no numbers are no slips, so that no row is to be removed."""
-DECIMALS = "; where these are decimal commas, write decimal points, or put semicolons between the cells"
-FEW = 8
-"""Columns, lines and cells that a message lists."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +144,7 @@ def read_table(
     ([1.5], [(2, {'b': '2'})])
     """
     theirs, (text, coding) = theirs or {}, table_text(data, fault, example)
-    content = _labelled(text) or _laid_out(text, layout_of(text, names, theirs), fault, example, most_rows)
+    content = labelled(text) or laid_out(text, layout_of(text, names, theirs), fault, example, most_rows)
     rows, places, line, notes = content.rows, content.places, content.line, content.notes
     if len(rows) > most_rows:
         raise fault("size", None, f"more than {most_rows:,} rows", "split the file, or keep every tenth reading")
@@ -196,103 +178,18 @@ def read_table(
     missed = f"no column is called {', and none '.join(absent.values())}; found {', '.join(ours.header[:FEW])}"
     notes += [missed] if absent else []
     decimal = "" if content.mark == "," and QUOTED_DECIMAL.search(text) else content.mark
-    lost = dict.fromkeys(absent, missed)
     return Table(
-        ours.header, line, tuple(rows), tuple(places), fault, decimal, ours, tuple(notes), lost, content.unnamed
+        header=ours.header,
+        line=line,
+        rows=tuple(rows),
+        lines=tuple(places),
+        fault=fault,
+        mark=decimal,
+        names=ours,
+        notes=tuple(notes),
+        lost=dict.fromkeys(absent, missed),
+        unnamed=content.unnamed,
     )
-
-
-@dataclass(slots=True)
-class _Content:
-    """What stands in a text: names, rows and their lines, the line of names, the mark, notes, and the lines above."""
-
-    header: list[str]
-    rows: list[list[str]]
-    places: list[int]
-    line: int
-    mark: str
-    notes: list[str]
-    above: str = ""
-    unnamed: str = ""
-
-
-def _labelled(text: str) -> _Content | None:
-    """The content of a text whose lines name their numbers; None for any other."""
-    if not (found := labelled_rows(text)):
-        return None
-    header, rows, places = found
-    others = sum(map(bool, map(str.strip, text.split("\n")))) - len(rows)
-    notes = [f"lines that do not name {', '.join(header[:FEW])} were left out: {others}"] if others else []
-    return _Content(header, rows, places, places[0], ",", notes)
-
-
-def _laid_out(text: str, layout: Layout, fault: Fault, example: str, most_rows: int) -> _Content:
-    """The content of a text by its layout; raises a fault where it has none."""
-    if text.lstrip().startswith(("{", "[{", "[\n{")):
-        raise fault("binary", None, "this is JSON, not a table", "write its records as CSV")
-    if not (layout.names or layout.width):
-        raise fault("table", None, "no line names the columns", f"the first line is such as: {example}")
-    header, rows, places, left = _read(text, layout, fault, most_rows)
-    notes = _left_out(layout, [*left, *((0, cells) for cells in layout.units if not any(map(unit_of, cells)))])
-    gap = any(places[0] < place < places[-1] for place, _ in left) if places else False
-    above = "" if gap else "\n".join(layout.above)  # a rate says no times where rows are lost
-    content = _Content(header, rows, places, layout.line, layout.mark, notes, above)
-    lacking = layout.width - len(layout.names) if layout.names and header[0] == "1" else 0
-    if lacking and layout.mark == "," and rows and _with_decimals(rows, lacking):
-        content.header = with_units(layout.names, layout.units)
-    elif lacking:
-        content.line = 0
-        content.unnamed = f"rows have {layout.width} cells, where the line of names has {len(layout.names)}"
-        content.unnamed += DECIMALS * (layout.mark == "," and "." not in "".join(rows[0]))
-    return content
-
-
-def _read(
-    text: str, layout: Layout, fault: Fault, most_rows: int
-) -> tuple[list[str], list[list[str]], list[int], list[tuple[int, list[str]]]]:
-    """Names, rows and their lines, and the lines below the names that are no rows; raises a fault for a misfit."""
-    header, rows, places = [cell.strip('"') for cell in layout.names], list[list[str]](), list[int]()
-    header = with_units(header, layout.units)
-    if layout.width == len(header) + 1 and '\n"1"' in text:
-        header.insert(0, "")  # R names no column of row numbers
-    if len(header) < layout.width and (layout.key or not header):
-        header = [str(at + 1) for at in range(layout.width)]
-    left, place = list[tuple[int, list[str]]](), layout.start
-    try:
-        for place, row, good in rows_of(layout, text):
-            if row == layout.names or row in layout.units:
-                continue
-            if not good:
-                left.append((place, row))
-            elif any(row[len(header) :]):
-                what = f"{len(row)} cells, where the first line names {len(header)}"
-                help = "write decimal points, put names with commas in quotes, or put semicolons between the cells"
-                raise fault("table", place, what, help)
-            else:
-                rows.append(row)
-                places.append(place)
-                if len(rows) > most_rows:
-                    break
-    except csv.Error as problem:
-        raise fault("table", place + 1, f"this row cannot be read ({problem})", "save it as CSV") from None
-    foot = layout.key[0] if layout.key else 0
-    while len(rows) > 1 and layout.key and len(left) < LONGEST_FOOT and _is_word(rows[-1][foot : foot + 1]):
-        left.append((places.pop(), rows.pop()))
-    return header, rows, places, left
-
-
-def _is_word(cells: Sequence[str]) -> bool:
-    return bool(cells and cells[0] and cells[0].lower() not in NOTHINGS and not is_number(cells[0]))
-
-
-def _left_out(layout: Layout, left: Sequence[tuple[int, list[str]]]) -> list[str]:
-    """Notes on the lines that are no rows: above the names, and among or below the rows."""
-    above = sum(bool(line.strip()) and not line.startswith(COMMENTS) for line in layout.above)
-    notes = [f"lines above the names were passed over: {above}"] if above else []
-    if left:
-        quoted = ", ".join(repr(layout.mark.join(row)[:LONGEST_CELL]) for _, row in sorted(left)[:3])
-        notes.append(f"lines that are no rows were left out: {len(left)} ({quoted})")
-    return notes
 
 
 def _column(cell: str, header: Sequence[str]) -> str:
@@ -301,16 +198,3 @@ def _column(cell: str, header: Sequence[str]) -> str:
         return cell if cell in header else header[int(cell) - 1] or cell
     bare = [name for name in header if cell.lower() in (name.lower(), name.partition(" [")[0].lower())]
     return bare[0] if len(bare) == 1 else cell
-
-
-def _with_decimals(rows: Sequence[list[str]], lacking: int) -> bool:
-    """Join whole numbers with the digits behind their decimal commas, where that leaves as many cells as names."""
-    pairs = [at for at in range(min(map(len, rows)) - 1)
-             if all(WHOLE.fullmatch(row[at]) and row[at + 1].isdecimal() and len(row[at + 1]) == len(rows[0][at + 1])
-                    for row in rows)]  # fmt: skip
-    if len(pairs) != lacking or any(POINT.fullmatch(cell) for row in rows for cell in row):
-        return False
-    for row in rows:
-        for at in reversed(pairs):
-            row[at : at + 2] = [f"{row[at]}.{row[at + 1]}"]
-    return True
