@@ -71,7 +71,12 @@ def missing(table: Table, name: str, what: str) -> InputError:
 
 
 def candidates(table: Table, name: str) -> list[str]:
-    """Columns that may be one of ours: those that may mean it, in its unit, or with numbers such as it has."""
+    """Columns that may be one of ours: those that may mean it, in its unit, or with numbers such as it has.
+
+    Of the last, the one that varies most comes first, as what is driven does.
+    """
+    import numpy as np
+
     if name in table.names.doubtful:
         return list(table.names.doubtful[name])
     free = set(table.header) - {*table.names.renamed, TIME, "icon", ""}
@@ -81,15 +86,22 @@ def candidates(table: Table, name: str) -> list[str]:
     if alike or not table.rows:
         return alike or bare[: len(bare) == 1]
     likely = [cell for cell in bare if table.header.count(cell) == 1 and _may_be(name, table, cell)]
-    return likely[:1] if name == TIME else likely
+    return likely[:1] if name == TIME else sorted(likely, key=lambda cell: -float(np.nanstd(_sampled(table, cell))))
+
+
+def _sampled(table: Table, cell: str) -> Array:
+    """Numbers of a column (rows,) from up to 400 rows all over the table, NaN where there is none."""
+    import numpy as np
+
+    texts = list(table.texts(cell))[:: len(table.rows) // 400 + 1]
+    return np.array([as_number(text, table.mark) for text in texts])
 
 
 def _may_be(name: str, table: Table, cell: str) -> bool:
     """Whether some cells of a column rise as times do, or vary as temperatures of a display do."""
     import numpy as np
 
-    step = max(len(table.rows) // 200, 1)
-    values = np.array([as_number(text, table.mark) for text in list(table.texts(cell))[::step]])
+    values = _sampled(table, cell)
     sound = values[np.isfinite(values)]
     if len(sound) < MOST_ALIKE * len(values) or len(sound) < 2:
         return False
