@@ -170,8 +170,8 @@ CURE = "leave the cell empty"
 def read_log(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None = None) -> Log:
     r"""Read a measured log: a table with a line of names, its cells separated by commas, semicolons or tabs.
 
-    A table of pandas is read as the file that it would write. `columns` says what the file calls ours, such as
-    {"display_C": "T1"}, where that does not follow from its names.
+    A table of pandas is read as the file that it would write, with its index where that holds times. `columns` says
+    what the file calls ours, such as {"display_C": "T1"}, where that does not follow from its names.
     Raises LogError for a file that is not a log, with its line or column and the cure.
 
     >>> import tempfile
@@ -185,7 +185,8 @@ def read_log(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None 
     if isinstance(path, str | Path):
         where, data = Path(path), read_bytes(Path(path), "log", MOST_MB, LogError)
     else:
-        where, data = Path("table"), path.to_csv(index=False).encode()
+        timed = path.index.dtype.kind in "mMf" and "time_s" not in path.columns  # clocks, elapsed times, or seconds
+        where, data = Path("table"), path.to_csv(index=timed, index_label="time_s").encode()
     table = read_table(data, table_fault(where, LogError), "time_s,current_A,…", MOST_ROWS, NAMES, columns)
     wanted = [name for name in dict.fromkeys(table.header) if is_known(name)]
     blind = not any(name.endswith("_C") for name in wanted)
