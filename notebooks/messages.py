@@ -55,9 +55,8 @@ def interrupted() -> typer.Exit:
 
 
 def _column(names: Mapping[str, str]) -> str:
-    ((ours, theirs),) = names.items()
-    quote = '"' if set(theirs) & set(" ()[]/&;*|<>$'°#") else ""
-    return f"--column {quote}{ours}={theirs}{quote}"
+    quotes = {theirs: '"' if set(theirs) & set(" ()[]/&;*|<>$'°#") else "" for theirs in names.values()}
+    return " ".join(f"--column {quotes[theirs]}{ours}={theirs}{quotes[theirs]}" for ours, theirs in names.items())
 
 
 OPTIONS: Mapping[str, Callable[[Any], str]] = {

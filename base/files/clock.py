@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+ELAPSED = re.compile(r"(\d+)(?: days? \+?|:(?=\d\d:\d\d:))(\d\d:\d\d:\d\d(?:\.\d+)?)")
+"""Days and a time of day, as pandas and cameras write them."""
 DAY_S, HOUR_S, LONGEST_STAMP = 86_400.0, 3600.0, 60
 
 
@@ -28,7 +30,11 @@ def seconds_of(cells: Sequence[str]) -> Array | None:
     import pandas as pd
 
     cut = re.fullmatch(r"\d+:\d\d[.,]\d+", cells[0]) is not None
-    plain = [re.sub(r"[,:](\d{3,6})(?=\D*$)", r".\1", f"0:{cell}" if cut else cell) for cell in cells]
+    bare = [re.sub(r"^(\d\d[A-Za-z]{3}\d{4}):", r"\1 ", cell.strip("[]() ")) for cell in cells]
+    plain = [re.sub(r"[,:](\d{3,6})(?=\D*$)", r".\1", f"0:{cell}" if cut else cell) for cell in bare]
+    if all(map(ELAPSED.fullmatch, plain)):
+        spans = pd.to_timedelta(pd.Series([ELAPSED.sub(r"\1 days \2", cell) for cell in plain]))
+        return np.asarray((spans - spans.iloc[0]).dt.total_seconds(), dtype=np.float64)
     found: list[Array] = []
     for day_first in (False, True) if max(map(len, cells)) <= LONGEST_STAMP else ():
         try:

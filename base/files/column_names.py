@@ -20,13 +20,15 @@ class Unit(NamedTuple):
 
 
 SPELLINGS = {
-    "s sec secs second seconds sekunden": Unit("s"),
+    "s sec secs second seconds sekunden 秒": Unit("s"),
     "ms msec msecs millisecond milliseconds millis": Unit("s", 1e-3),
     "us µs μs usec microsecond microseconds": Unit("s", 1e-6),
     "ns nsec nanosecond nanoseconds": Unit("s", 1e-9),
     "min mins minute minutes": Unit("s", 60.0),
     "h hr hour hours": Unit("s", 3600.0),
-    "c °c ºc ℃ øc ¡c degc deg.c degrees.c celsius deg.celsius degrees.celsius": Unit("C"),  # ø, ¡: DOS, old Macs
+    "c °c ºc ℃ øc ¡c degc deg.c degree.c degrees.c cel celsius deg.celsius degree.celsius degrees.celsius": Unit(
+        "C"
+    ),  # ø, ¡: DOS, old Macs
     "k kelvin": Unit("C", 1.0, -273.15),
     "f °f ºf ℉ øf ¡f degf deg.f degrees.f fahrenheit": Unit("C", 1 / 1.8, -32 / 1.8),
     "mc m°c mdegc millidegc millicelsius": Unit("C", 1e-3),
@@ -37,20 +39,36 @@ SPELLINGS = {
 }
 UNITS = {spelling: unit for spellings, unit in SPELLINGS.items() for spelling in spellings.split()}
 
-TIME = {"time", "timestamp", "datetime", "zeit", "uhrzeit", "zeitstempel", "elapsed", "temps", "tiempo", "tempo"}
+TIME = {
+    "time",
+    "timestamp",
+    "時間",
+    "时间",
+    "datenum",
+    "datetime",
+    "zeit",
+    "uhrzeit",
+    "zeitstempel",
+    "elapsed",
+    "temps",
+    "tiempo",
+    "tempo",
+}
 BESIDE_TIME = {"x", "value", "date", "datum", "relative", "local", "utc", "gmt", "system", "stamp", "scan", "since",
                "start", "run", "of", "day"}  # fmt: skip
-THERMAL = {"t", "temp", "temps", "temperature", "temperatur", "température", "temperatura"}
+THERMAL = {"t", "temp", "temps", "temperature", "temperatur", "température", "temperatura", "温度"}
 IDLE = {"actual", "act", "measured", "mean", "avg", "ave", "last", "value", "output", "average", "ist", "istwert",
         "reading", "sensor", "ch", "channel", "tec", "drive"}  # fmt: skip
 OTHERS = {
     "i": "current", "strom": "current", "courant": "current", "corriente": "current", "corrente": "current",
     "u": "voltage", "spannung": "voltage", "tension": "voltage", "hot side": "hot plate", "hotplate": "hot plate",
+    "sink": "hot plate", "heat sink": "hot plate", "heatsink": "hot plate", "電流": "current", "電圧": "voltage",
     "set point": "setpoint", "soll": "setpoint", "haut": "skin", "vsense": "current", "plus": "voltage",
 }  # fmt: skip
 """Other words for what our names say."""
 
-BRACKET = re.compile(r"(.*?)[\s_]*[(\[{<]([^)\]}>]*)[)\]}>].*")
+LATEX = str.maketrans("", "", "$\\^~")
+BRACKET = re.compile(r"[\s_]*[(\[{<]([^)\]}>]*)[)\]}>]")
 BEHIND = re.compile(r"(.*?)(?:\s*[/,|]\s*|\s+in\s+|[\s_]+)([^\s_/,|()\[\]]+|deg(?:rees)?[ .]\w+)(?:\s*\(.*)?")
 SPICE = re.compile(r"([vi])\((.+)\)", re.IGNORECASE)
 LONGEST_NAME = 200
@@ -59,15 +77,18 @@ HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 def unit_of(text: str) -> Unit | None:
     """The unit that a text such as [Deg C] or ms is; None where it is none."""
-    return UNITS.get(re.sub(r"\s+", ".", text.strip(" ()[]{}<>\"'").lower()))
+    plain = re.sub(r"\^?\\circ", "°", text).translate(LATEX).strip(" ()[]{}<>\"'").lower()
+    return UNITS.get(re.sub(r"[\s_]+", ".", plain)) if plain else None
 
 
 def parted(cell: str) -> tuple[str, Unit | None]:
     """The words of a name without its unit, and the unit."""
     for text in (cell, HUMP.sub(" ", cell)) if len(cell) <= LONGEST_NAME else ():
-        for pattern in (BRACKET, BEHIND):
-            if (found := pattern.fullmatch(text)) and (unit := unit_of(found[2])):
-                return found[1], unit
+        for found in BRACKET.finditer(text):
+            if unit := unit_of(found[1]):
+                return text[: found.start()], unit
+        if (behind := BEHIND.fullmatch(text)) and (unit := unit_of(behind[2])):
+            return behind[1], unit
     unit = unit_of(cell) if len(cell) > 1 else None  # "ms", but not the least value, "min"
     return ("time", unit) if unit and unit.ours == "s" and unit.factor <= 1 else (cell, None)
 

@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .clock import order_fault, seconds_of, spread
+from ..words.number_text import count_of
+from .clock import DAY_S, HOUR_S, order_fault, seconds_of, spread
+from .column_choice import is_setting
 from .column_names import Unit, parted
-from .table import Table
-from .units import POSSIBLE_C, SENSED_C, errors, like_units_of_time, unit_fault
+from .table import FEW, Table, as_number
+from .units import (
+    ON_SKIN_C,
+    POSSIBLE_C,
+    SENSED_C,
+    USUAL_A,
+    errors,
+    is_days,
+    like_units_of_time,
+    too_fast,
+    unit_fault,
+)  # fmt: skip
 
 if TYPE_CHECKING:
     import numpy as np
@@ -21,6 +34,11 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 TIME, ROW = "time_s", "remove the row"
+ON_DISPLAY = ("temperature_C", "display_C", "skin_C")
+MOST_ALIKE = 0.95
+"""The part of a column's cells that must be such as one of ours has, to be proposed."""
+UNPADDED = re.compile(r"\d+[.,]\d{1,3}")
+"""Seconds, a point, and the milliseconds as a whole number, as sketches print them."""
 CLOCK_CURE = "write times as seconds from any start, or as 2026-03-02 23:59:58.050"
 
 
@@ -35,17 +53,64 @@ class MeasuredTable:
 
 
 def missing(table: Table, name: str, what: str) -> InputError:
-    """The fault of a column that a table does not have, or may have twice, and how to say which it is."""
-    name, what = (name, what) if TIME in table.header else (TIME, "time in s")
-    name, several = next(iter(table.names.doubtful.items()), (name, ()))
+    """The fault of columns that a table does not have, or may have twice, and how to say which they are."""
+    needed = [] if name in (TIME, *table.header) else [name]
+    needed = needed if TIME in table.header else [TIME, *needed]
+    theirs = {each: candidates(table, each) for each in needed}
+    first = needed[0]
+    said = f"the column {first} ({what if first == name else 'time in s'}) is missing; found {table.found}"
+    if not table.line and table.rows:
+        row = ", ".join(table.rows[0][:FEW])
+        said = f"no line names the {count_of(len(table.header), 'column')}; the first row is {row}"
+        said = f"{table.unnamed}; the first row is {row}" if table.unnamed else said
+    several = [(each, cells) for each, cells in theirs.items() if len(cells) > 1]
+    for each, cells in several:
+        said += f"; {' and '.join(cells[:FEW])} may be {each}"
+    known = {each: cells[0] for each, cells in theirs.items() if cells and theirs[first]}
+    return table.fault("table", table.line or None, said, "say which it is").to(columns=known or {first: "THEIRS"})
+
+
+def candidates(table: Table, name: str) -> list[str]:
+    """Columns that may be one of ours: those that may mean it, in its unit, or with numbers such as it has.
+
+    Of the last, the one that varies most comes first, as what is driven does.
+    """
+    import numpy as np
+
+    if name in table.names.doubtful:
+        return list(table.names.doubtful[name])
     free = set(table.header) - {*table.names.renamed, TIME, "icon", ""}
-    units = {cell: parted(cell)[1] for cell in table.header if cell in free}
-    close = [cell for cell, unit in units.items() if unit and unit.ours == name.rpartition("_")[2]]
-    close = close or [cell for cell, unit in units.items() if unit is None]
-    theirs = several[0] if several else close[0] if len(close) == 1 else "THEIRS"
-    said = f"{' and '.join(several)} may be {name}" if several else ""
-    said = said or f"the column {name} ({what}) is missing; found {table.found}"
-    return table.fault("table", table.line, said, "say which it is").to(columns={name: theirs})
+    units = {cell: parted(cell)[1] for cell in table.header if cell in free and not is_setting(cell)}
+    alike = [cell for cell, unit in units.items() if unit and unit.ours == name.rpartition("_")[2]]
+    bare = [cell for cell, unit in units.items() if unit is None]
+    if alike or not table.rows:
+        return alike or bare[: len(bare) == 1]
+    likely = [cell for cell in bare if table.header.count(cell) == 1 and _may_be(name, table, cell)]
+    return likely[:1] if name == TIME else sorted(likely, key=lambda cell: -float(np.nanstd(_sampled(table, cell))))
+
+
+def _sampled(table: Table, cell: str) -> Array:
+    """Numbers of a column (rows,) from up to 400 rows all over the table, NaN where there is none."""
+    import numpy as np
+
+    texts = list(table.texts(cell))[:: len(table.rows) // 400 + 1]
+    return np.array([as_number(text, table.mark) for text in texts])
+
+
+def _may_be(name: str, table: Table, cell: str) -> bool:
+    """Whether some cells of a column rise as times do, or vary as temperatures of a display do."""
+    import numpy as np
+
+    values = _sampled(table, cell)
+    sound = values[np.isfinite(values)]
+    if len(sound) < MOST_ALIKE * len(values) or len(sound) < 2:
+        return False
+    rising = bool((np.diff(sound) > 0).mean() >= MOST_ALIKE)
+    if name == TIME or rising or not np.ptp(sound):
+        return name == TIME and rising
+    low, high = ON_SKIN_C if name.endswith("_C") else USUAL_A
+    sound = sound - 273.15 * (name.endswith("_C") and np.median(sound) > 273.15)
+    return bool(((sound >= low) & (sound <= high)).mean() >= MOST_ALIKE)
 
 
 def measured(
@@ -60,7 +125,8 @@ def measured(
 
     if TIME not in table.header:
         raise missing(table, TIME, "time in s")
-    time, lines, notes = _times(table), np.array(table.lines), list(table.notes)
+    lines, notes = np.array(table.lines), list(table.notes)
+    time, clocked = _times(table, notes)
     counts = {name: Counter[str]() for name in names}
     columns = {name: table.numbers(name, cure, counts[name] if gaps else None) for name in names}
     for name, (_, unit) in table.names.renamed.items():
@@ -98,24 +164,46 @@ def measured(
     time, count = found
     if count:
         notes.append(f"the clock has too few digits: {count:,} rows at the time of the row before were spread")
+    stated = table.names.renamed.get(TIME, ("", Unit("s")))[1].factor
     for name, column in () if ours else columns.items():
         if (fault := unit_fault(name, column)) is not None:
             raise table.fault("unit", None, *fault)
-    if not ours and (like := like_units_of_time(time)):
+        if not clocked and name in ON_DISPLAY and (fast := too_fast(name, time, column, stated)):
+            if fast[0]:
+                raise table.fault("unit", None, *fast[1:])
+            notes.append("; ".join(fast[1:]))
+    if not ours and not clocked and (like := like_units_of_time(time)):
         what = f"time_s goes in steps of {np.median(np.diff(time)):g} over {time[-1] - time[0]:g}, read as s"
         notes.append(f"{what}: these look like {like[0]}; if they are, {like[1]} to have s")
     return MeasuredTable(time, columns, tuple(lines.tolist()), tuple(notes))
 
 
-def _times(table: Table) -> Array:
+def _times(table: Table, notes: list[str]) -> tuple[Array, bool]:
+    """Times (rows,) in s, and whether a clock tells them; what was made of them goes to the notes."""
+    import numpy as np
+
     cells, unit = list(table.texts(TIME)), table.names.renamed.get(TIME, ("", Unit("s")))[1]
     if not any(cells) and cells:
         raise table.fault("time", None, "time_s is empty in every row", "add the times, from the interval between rows")
     odd = [row for row, cell in enumerate(cells) if ":" not in cell]
     if 2 * len(odd) >= len(cells):
-        return table.numbers(TIME, CLOCK_CURE if len(odd) < len(cells) else ROW) * unit.factor
+        time = table.numbers(TIME, CLOCK_CURE if len(odd) < len(cells) else ROW) * unit.factor
+        if is_days(time):
+            notes.append(f"time_s begins at {time[0]:.9g}: read as days, as spreadsheets count")
+            return np.round((time - time[0]) * DAY_S, 4), True
+        if order_fault(time) and all(map(UNPADDED.fullmatch, cells)):
+            parts = np.array([re.split("[.,]", cell) for cell in cells], dtype=np.float64)
+            padded = parts @ [1.0, 1e-3] * unit.factor
+            if (np.diff(padded) > 0).all():
+                notes.append(f"time_s {cells[1]} is read as {padded[1]:g}: its milliseconds have no leading zeros")
+                return padded, False
+        return time, False
     if odd or (times := seconds_of(cells)) is None:
         row = [*odd, 0][0]
         what = f"time_s is {cells[row]!r}, not a time" if cells[row] else "time_s is empty"
         raise table.fault("cell", table.lines[row], what, ROW if odd else CLOCK_CURE)
-    return times
+    falls = np.flatnonzero(np.diff(times) < 0)
+    if falls.size == 1 and abs(times[falls[0] + 1] - times[falls[0]] + HOUR_S) < 0.1 * HOUR_S:
+        notes.append("the clock goes back by an hour, as at the end of summer time: read on")
+        times = times + HOUR_S * (np.arange(len(times)) > falls[0])
+    return times, True

@@ -1,15 +1,7 @@
-"""The reader of tables: a line of names above rows of cells.
-
-Commas, semicolons, tabs or spaces separate the cells; where it is not commas, decimal commas are numbers too. What
-stands above the names, lines that begin with #, and the line by which spreadsheets name the separator, are passed over.
-"""
+"""The reader of tables: columns by our names, whatever a file calls them and whatever else stands in it."""
 
 from __future__ import annotations
 
-import contextlib
-import csv
-import io
-import itertools
 import math
 import re
 from collections import Counter
@@ -19,7 +11,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from ..checks.arguments import InputError
-from .column_names import NamedHeader, meant, named, unit_of
+from .column_choice import chosen, stated_rate, stated_unit
+from .column_names import NamedHeader, parted, unit_of
+from .labelled_lines import parted_cells
+from .layout import LONGEST_CELL, NOTHINGS, WITH_UNIT, layout_of
+from .table_content import FEW as FEW
+from .table_content import labelled, laid_out
 from .table_text import table_text
 
 if TYPE_CHECKING:
@@ -30,21 +27,18 @@ Kind = Literal["table", "size", "cell", "empty", "binary", "time", "unit"]
 Fault = Callable[[Kind, int | None, str, str], InputError]
 """Makes the error for a fault: its kind, the line in the file, what is wrong, and the cure."""
 
-MARKS = ("\t", ",", ";", "|", " ")
-ASIDE = ("#", "sep=")
-NOTHINGS = ("n/a", "na", "#n/a", "nan", "null", "none", "-", "--", "---", "ol", "ovl", "overload")
 OVERLOADS = (9.9e37, 9.91e37)
 """What loggers write for a missing number, and instruments by SCPI for one that is out of range or none."""
 LARGEST = 1e38
 """Beyond what SCPI writes; sums of squares stay finite."""
-NUMBER = re.compile(r"[-+−]?[-\d.,:/]*\d([eE][-+]?\d+)?")
-"""A number or a time of day, as no name of a column is."""
 QUOTED_DECIMAL = re.compile(r'"[-−]?(\d+,\d{1,2}|0,\d+|\d+,\d{4,})"')
 """Shows that decimals have commas, where commas also separate the cells; 1,234 may be a thousand."""
-WITH_UNIT = re.compile(r"([-+−]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\d\s].*)")
 GROUPED = re.compile(r"[-+−]?\d{1,3}(?:([., ' ])\d{3})+(?:[.,]\d+)?")
-FEW, LONGEST_CELL, MOST_ABOVE, LONGEST_LINE = 8, 60, 200, 10_000
-"""Columns that a message lists, characters of a cell that it quotes; lines, and of each how much, to find names."""
+DATED = re.compile(r"(\d{1,2})[. -]{1,2}([A-Za-zäé]{3})[a-zäé.]*")
+MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
+GERMAN = str.maketrans({"ä": "a", "i": "y", "k": "c", "z": "c"})
+FEW_BAD = 0.05
+"""Larger shares of cells that are no numbers are no slips, so that no row is to be removed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +46,7 @@ class Table:
     """Rows of cells below a ``header`` of names; ``lines`` are where they stand in the file, ``line`` the header.
 
     ``names`` says what was renamed, and the units that names in the file say; ``notes`` say what was passed over,
-    ``lost`` by our names what the file does not call as was said.
+    ``lost`` by our names what the file does not call as was said, ``unnamed`` why the names are not those of the rows.
     """
 
     header: tuple[str, ...]
@@ -64,6 +58,7 @@ class Table:
     names: NamedHeader
     notes: tuple[str, ...]
     lost: Mapping[str, str]
+    unnamed: str = ""
 
     @property
     def found(self) -> str:
@@ -105,21 +100,29 @@ class Table:
                 limit = f" of at most {LARGEST:g}" if abs(value) < math.inf else ""
                 quoted = repr(cell if len(cell) <= LONGEST_CELL else f"{cell[:LONGEST_CELL]}…")
                 what = f"{name} is {quoted}, not a finite number{limit}" if cell else f"{name} is empty"
-                raise self.fault("cell", self.lines[row], what, self._cure(name, row, cell) or cure)
+                raise self.fault("cell", self.lines[row], what, self._cure(name, row, cell, cure))
         return values
 
-    def _cure(self, name: str, row: int, cell: str) -> str:
+    def _cure(self, name: str, row: int, cell: str, cure: str) -> str:
+        date = DATED.fullmatch(cell)
+        if date and (month := date[2].lower().translate(GERMAN)) in MONTHS:
+            was = f"{cell} was {date[1]}.{MONTHS.index(month) + 1}"
+            return f"a spreadsheet made dates of numbers: {was}; export the numbers again as text"
+        bad = sum(math.isnan(as_number(each, self.mark)) for each in self.texts(name))
         if GROUPED.fullmatch(cell):
             return "write numbers without marks between thousands"
         if (found := WITH_UNIT.fullmatch(cell)) and unit_of(found[2]):
             theirs = self.names.renamed.get(name, (name,))[0]
             return f"write {found[1]}; units belong in the names of the columns, as in {theirs} [{found[2]}]"
         alone = len(self.header) > 1 and set(self.rows[row]) <= {"", cell}
-        return "remove this line, which is not a row of the table" if cell and alone else ""
+        if bad > FEW_BAD * len(self.rows) > 1:
+            return f"{bad} of {len(self.rows)} rows have no number there: export it again, or name another column"
+        return "remove this line, which is not a row of the table" if cell and alone else cure
 
 
 def as_number(cell: str, mark: str = ",") -> float:
     """Return the number in a cell, NaN where there is none; a decimal comma counts where ``mark`` is another."""
+    cell = cell.replace("'", "").replace("’", "")
     plain = cell.replace(",", ".") if mark != "," and cell.count(",") == 1 and "." not in cell else cell
     try:
         return math.nan if "_" in plain else float(plain.replace("−", "-"))
@@ -133,54 +136,20 @@ def read_table(
 ) -> Table:  # fmt: skip
     """Return the table in the bytes of a file; raises a fault for rows that do not fit the line of names.
 
-    ``example`` is such a line, for messages. That line is the one that has the most of ``names``, of what means the
-    same, and of what ``theirs`` calls them; where none has any, the first line.
+    ``example`` is such a line, for messages. The names are known by ``names``, by what means the same and by what
+    ``theirs`` calls them, or because they stand above the rows; where no line names the columns, their positions do.
 
     >>> table = read_table(b"a;b\\n1,5;2\\n", lambda *about: ValueError(about), "a,b", 10)
     >>> table.numbers("a", "").tolist(), list(table.records(["b"]))
     ([1.5], [(2, {'b': '2'})])
     """
-    theirs, text = theirs or {}, table_text(data, fault, example)
-    above, mark, skipped = _line_of_names(text, names, theirs)
-    lines = _rows(text, above, mark, fault)
-    line, header = next(lines, (0, [""]))
-    header = [cell.strip('"') for cell in header]
-    if not any(header):
-        raise fault("table", None, "no line names the columns", f"the first line is such as: {example}")
-    if all(not cell or NUMBER.fullmatch(cell) or cell.lower() in NOTHINGS for cell in header):
-        put = example if mark == "," or not header[1:] else f"{len(header)} names such as {example.replace(',', mark)}"
-        raise fault("table", line, "this line holds numbers, not the names of columns", f"put {put} above it")
-    rows, places = list[list[str]](), list[int]()
-    for place, row in lines:
-        if (
-            rows
-            and row[0][:1].isdigit() > header[0][:1].isdigit()
-            and len(row) <= len(header)
-            and len(rows) < most_rows
-        ):
-            rows.append(row)  # neither names again nor a rule
-            places.append(place)
-            continue
-        bare = row[: len(header)]
-        if row[0].startswith(ASIDE) or bare == header or all(set(cell) <= {"-", "=", "*"} for cell in bare):
-            continue  # names that stand again, and rules between pages
-        said = [] if rows else [cell for cell in bare if cell.strip(" ()[]-")]  # a row of units, but for a word
-        if sum(unit_of(cell) is None for cell in said) < 0.5 * len(said) and not re.search(r"\d", "".join(said)):
-            full = {name: f"{name} [{cell.strip(' ()[]')}]" for name, cell in zip(header, bare, strict=False)
-                    if unit_of(cell)}  # fmt: skip
-            header = [full.get(name, name) for name in header]
-            theirs = {name: full.get(cell, cell) for name, cell in theirs.items()}
-            continue
-        if not rows and len(row) == len(header) + 1 and '\n"1"' in text:
-            header.insert(0, "")  # R names no column of row numbers
-        if any(row[len(header) :]):
-            what = f"{len(row)} cells, where the first line names {len(header)}"
-            help = "write decimal points, put names with commas in quotes, or put semicolons between the cells"
-            raise fault("table", place, what, help)
-        rows.append(row)
-        places.append(place)
-        if len(rows) > most_rows:
-            raise fault("size", None, f"more than {most_rows:,} rows", "split the file, or keep every tenth reading")
+    theirs, (text, coding) = theirs or {}, table_text(data, fault, example)
+    content = labelled(text) or laid_out(text, layout_of(text, names, theirs), fault, example, most_rows)
+    rows, places, line, notes = content.rows, content.places, content.line, content.notes
+    if len(rows) > most_rows:
+        raise fault("size", None, f"more than {most_rows:,} rows", "split the file, or keep every tenth reading")
+    header = parted_cells(content.header, rows)
+    theirs = {name: _column(cell, header) for name, cell in theirs.items()}
     if not header[0] and rows and ":" in rows[0][0]:
         header[0] = "Time"  # PicoLog leaves the name of its clock empty
     firsts = dict[str, int]()
@@ -188,67 +157,44 @@ def read_table(
         first = firsts.setdefault(name, at)
         if name and rows and first < at and all(row[first : first + 1] == row[at : at + 1] for row in rows):
             header[at] = ""  # SPICE programs and LabVIEW may write their times beside each column
-    ours = named(header, names, theirs)
+    notes += [f"the text was read as {coding}"] if coding else []
+    rate = stated_rate(content.above) if "time_s" in names else None
+    named_columns = [at for at, name in enumerate(header) if name]
+    if len(named_columns) == 1 and rows and "time_s" in names:
+        at = named_columns[0]
+        stated = "" if parted(header[at])[1] else stated_unit(content.above)
+        header[at] += f" [{stated}]" if stated else ""
+        if rows[0][at : at + 1] == [str(len(rows) - 1)]:  # the number of the rows stands above them
+            del rows[0], places[0]
+    ours = chosen(header, rows, names, theirs, rate, notes)
+    places = places[len(places) - len(rows) :]
     for name, (own, unit) in ours.renamed.items():
         if unit.ours not in ("", name.rpartition("_")[2]) and "_" in name:
             raise fault("unit", line, f"{own!r} is in another unit than {name}", "name another column")
-    notes = [f"lines above the names were passed over: {skipped}"] if skipped else []
     read = [f"{name} from {own!r}" for name, (own, unit) in ours.renamed.items()
             if theirs.get(name) != own or unit[1:] != (1, 0)]  # fmt: skip
     notes += [f"read {', '.join(read[:FEW])}{', …' if len(read) > FEW else ''}"] if read else []
     absent = {name: f"{own!r}, to be {name}" for name, own in theirs.items() if own not in header}
     missed = f"no column is called {', and none '.join(absent.values())}; found {', '.join(ours.header[:FEW])}"
     notes += [missed] if absent else []
-    decimal = "" if mark == "," and QUOTED_DECIMAL.search(text) else mark
-    lost = dict.fromkeys(absent, missed)
-    return Table(ours.header, line, tuple(rows), tuple(places), fault, decimal, ours, tuple(notes), lost)
+    decimal = "" if content.mark == "," and QUOTED_DECIMAL.search(text) else content.mark
+    return Table(
+        header=ours.header,
+        line=line,
+        rows=tuple(rows),
+        lines=tuple(places),
+        fault=fault,
+        mark=decimal,
+        names=ours,
+        notes=tuple(notes),
+        lost=dict.fromkeys(absent, missed),
+        unnamed=content.unnamed,
+    )
 
 
-def _line_of_names(text: str, names: Sequence[str], theirs: Mapping[str, str]) -> tuple[int, str, int]:
-    """The number of lines above the names, the separator of cells, and how many of those lines have text."""
-    lines = [line[:LONGEST_LINE] for line in itertools.islice(io.StringIO(text), MOST_ABOVE)]
-    head = max((at for at, line in enumerate(lines) if line.startswith("***End_of_Header***")), default=-1)
-    first = next((at for at, line in enumerate(lines) if line.strip() and not line.startswith(ASIDE)), len(lines))
-    best, place, mark = 0.0, first, ""
-    for each in MARKS:
-        rows = list[tuple[int, list[str]]]()
-        with contextlib.suppress(csv.Error):
-            rows.extend(_cells((line.lstrip("# ") for line in lines), each))
-        for (at, cells), (_, below) in itertools.pairwise([*rows, (0, [])]):
-            known = {cell for cell in cells if cell in names or cell in theirs.values()}
-            words = [cell for cell in cells if len(cell) <= LONGEST_CELL]
-            score = float(len(known.union(found[0] for cell in words if (found := meant(cell, names)))))
-            numbers = any(map(NUMBER.fullmatch, words))
-            fits = not numbers and len(below) - len(cells) in (0, 1) and len(below) > 1
-            score = score + 0.5 * fits - 0.9 * numbers if score and (fits or each != " ") else 0.0
-            if score > best and at > head:
-                best, place, mark = score, at, each
-    if not best:
-        line = "".join(lines[first : first + 1])
-        mark = max(MARKS[:-1], key=line.count) if any(one in line for one in MARKS[:-1]) else " "
-    return place, mark, sum(bool(line.strip()) and not line.startswith(ASIDE) for line in lines[:place])
-
-
-def _cells(lines: Iterator[str], mark: str) -> Iterator[tuple[int, list[str]]]:
-    """Rows that are not empty, each with the number of lines above it."""
-    if mark == " ":
-        lines, mark = ("\t".join(line.split()) for line in lines), "\t"
-    reader, above = csv.reader(lines, delimiter=mark), 0
-    for row in reader:
-        cells = [" ".join(cell.split()) if "\n" in cell else cell.strip() for cell in row]
-        if any(cells):
-            yield above, cells
-        above = reader.line_num
-
-
-def _rows(text: str, above: int, mark: str, fault: Fault) -> Iterator[tuple[int, list[str]]]:
-    """Rows that are not empty, each with its line in the file, from the line of names on."""
-    place, stream = above + 1, itertools.islice(io.StringIO(text), above, None)
-    first = next(stream, "")
-    lines = itertools.chain([first.lstrip("# ") if first.startswith("#") else first], stream)
-    try:
-        for at, cells in _cells(lines, mark):
-            place = above + at + 1
-            yield place, cells
-    except csv.Error as problem:
-        raise fault("table", place + 1, f"this row cannot be read ({problem})", "save it as CSV") from None
+def _column(cell: str, header: Sequence[str]) -> str:
+    """The column that a user means by its name, by its name without a unit, or by its position, counted from 1."""
+    if cell in header or (cell.isdecimal() and 1 <= int(cell) <= len(header)):
+        return cell if cell in header else header[int(cell) - 1] or cell
+    bare = [name for name in header if cell.lower() in (name.lower(), name.partition(" [")[0].lower())]
+    return bare[0] if len(bare) == 1 else cell

@@ -30,8 +30,16 @@ LIMITS = {"A": (50.0, "milliamperes"), "V": (200.0, "millivolts")}
 """Far above what any display on skin takes, and far below what it takes in milliamperes and millivolts."""
 STEPS_S, LENGTHS_S, LONG_S = (1e-4, 2.0), (1.0, 3600.0), 600.0
 """Rows and lengths of what is recorded of a display in s, and the length from which whole seconds are doubted."""
-DAYS = (30_000.0, 60_000.0)
-"""Days from 1900 on to dates of today, in which spreadsheets count times."""
+DAYS = ((30_000.0, 60_000.0), (710_000.0, 750_000.0))
+"""Days to dates of today, from 1900 on, in which spreadsheets count times, and from the year 0 on, as MATLAB does."""
+FASTEST_K_PER_S, FAST_K_PER_S = 500.0, 20.0
+"""Beyond what any display does (the fastest contact thermodes reach 300 K/s); and what is doubted of less than 1 s."""
+USUAL_A = (-3.0, 3.0)
+"""Currents of displays on skin, by which a column without names is proposed."""
+RESTING_C, SKIN_C = 42.0, (22.0, 40.0)
+"""What touches skin does not begin above the first; medians of what counts or ohms stand for are between the others."""
+NTC_OHM, NTC_B_K, FULL_COUNTS = 1e4, 3950.0, {10: 1023.0, 12: 4095.0}
+"""The usual thermistor of sketches, 10 kΩ at 25 °C beside 10 kΩ (chosen by this project), and full counts by bits."""
 TEMPERATURES = (
     ("kelvin", 1.0, -273.15, "subtract 273.15"),
     ("°F", 1 / 1.8, -32 / 1.8, "subtract 32 and divide by 1.8"),
@@ -73,6 +81,8 @@ def unit_fault(name: str, values: Array) -> tuple[str, str] | None:
 def _temperature_fault(name: str, there: Array) -> tuple[str, str] | None:
     import numpy as np
 
+    if found := _like_a_thermistor(name, there):
+        return found
     middle, on_skin = float(np.median(there)), not name.startswith(("hot_plate", "probe_"))
     outside = (there < SENSED_C[0]) | (there > SENSED_C[1])
     low, high = ON_SKIN_C if on_skin else HOT_PLATE_C
@@ -81,7 +91,8 @@ def _temperature_fault(name: str, there: Array) -> tuple[str, str] | None:
     for unit, factor, plus, cure in () if plausible else TEMPERATURES:
         scaled = there * factor + plus
         kept = scaled[~errors(scaled, (low, high), (low - JUMP_K, high + JUMP_K))]
-        if low <= kept.min() and kept.max() <= high and np.median(kept) > MEDIAN_C:
+        resting = RESTING_C if on_skin else high
+        if low <= kept.min() and kept.max() <= high and np.median(kept) > MEDIAN_C and kept[0] <= resting:
             fits.append((f"{unit} ({number(float(kept.min()))} to {number(float(kept.max()))} °C)", cure))
     if fits:
         like, how = (" or ".join(each) for each in zip(*fits, strict=True))
@@ -93,6 +104,61 @@ def _temperature_fault(name: str, there: Array) -> tuple[str, str] | None:
     return f"{what}: a sensor that is unplugged or shorted", "connect it, or remove the column"
 
 
+def _like_a_thermistor(name: str, there: Array) -> tuple[str, str] | None:
+    """Readings of a column that are counts of a converter or ohms, where a usual thermistor has skin's temperatures."""
+    import numpy as np
+
+    whole, fits = bool((there == np.round(there)).all() and there.min() > 0), list[str]()
+    resistances = {"ohms of a thermistor of 10 kΩ": there} if there.min() > 2000 else {}
+    for bits, full in FULL_COUNTS.items() if whole and there.min() > 100 else ():
+        if there.max() < full:
+            below = NTC_OHM * there / (full - there)
+            resistances[f"counts of a converter ({bits} bit, thermistor of 10 kΩ below 10 kΩ)"] = below
+            resistances[f"counts of a converter ({bits} bit, thermistor of 10 kΩ above 10 kΩ)"] = NTC_OHM**2 / below
+    for words, ohm in resistances.items():
+        level = 1 / (1 / 298.15 + np.log(ohm / NTC_OHM) / NTC_B_K) - 273.15
+        if ON_SKIN_C[0] <= level.min() and level.max() <= ON_SKIN_C[1] and SKIN_C[0] <= np.median(level) <= SKIN_C[1]:
+            fits.append(
+                f"{words}, {number(float(level.min()))} to {number(float(level.max()))} °C with B {NTC_B_K:g} K"
+            )
+    tenths = [f"{part} of °C" for part, by in (("tenths", 0.1), ("hundredths", 0.01), ("thousandths", 0.001))
+              if SKIN_C[0] <= by * np.median(there) <= SKIN_C[1]]  # fmt: skip
+    if not fits or tenths:
+        return None
+    return f"{name} has a median of {np.median(there):g}: these look like {' or '.join(fits)}", "convert them to °C"
+
+
+def is_days(time: Array) -> bool:
+    """Whether times are days, as spreadsheets and MATLAB count them, of less than half a day."""
+    length = float(time[-1] - time[0]) if len(time) > 1 else 0.0
+    return 0 < length < 0.5 and any(low < time[0] < high for low, high in DAYS)
+
+
+def too_fast(name: str, time: Array, values: Array, stated: float) -> tuple[bool, str, str] | None:
+    """Whether a course is faster than any display, or doubtful, what it shows and what to do; None where it is neither.
+
+    `stated` is the unit of the column of times in s, as its name says.
+    """
+    import numpy as np
+
+    there = np.isfinite(values)
+    time, values = time[there], values[there]
+    if len(time) < 3 or time[-1] - time[0] >= LENGTHS_S[0]:
+        return None
+    apart = abs(float(time[np.argmax(values)] - time[np.argmin(values)]))
+    rate = float(np.ptp(values)) / apart if apart else 0.0
+    if rate < FAST_K_PER_S:
+        return None
+    fits = [each for each in (("seconds", 1.0), ("minutes", 60.0), ("hours", 3600.0))
+            if each[1] > stated and rate * stated / each[1] < FAST_K_PER_S
+            and (time[-1] - time[0]) * each[1] / stated <= LENGTHS_S[1]]  # fmt: skip
+    what = f"{name} changes by {rate:,.0f} K/s within {time[-1] - time[0]:.3g} s, by the times as they are read"
+    like = (
+        f"if these are {fits[0][0]}, call their column time ({fits[0][0]})" if fits else "check the unit of the times"
+    )
+    return rate > FASTEST_K_PER_S, what, like
+
+
 def like_units_of_time(time: Array, whole: bool = True) -> tuple[str, str] | None:
     """Units that times fit better than s, and what makes s of them; with ``whole``, of whole numbers alone."""
     import numpy as np
@@ -100,7 +166,7 @@ def like_units_of_time(time: Array, whole: bool = True) -> tuple[str, str] | Non
     if len(time) < 2 + whole:
         return None
     length, step = float(time[-1] - time[0]), float(np.median(np.diff(time)))
-    if DAYS[0] < time[0] < DAYS[1] and 0 < length < 0.5:
+    if is_days(time):
         return "days, as spreadsheets count", "multiply by 86,400"
     if (whole and (np.abs(time - np.round(time)) > 1e-6).any()) or (step <= STEPS_S[1] and length <= LONG_S):
         return None

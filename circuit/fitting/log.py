@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermicon.base.files.clock import order_fault
+from thermicon.base.files.column_choice import is_reading
 from thermicon.base.files.inputs import read_bytes, table_fault
 from thermicon.base.files.measured_table import measured, missing
 from thermicon.base.files.table import read_table
 from thermicon.base.files.units import like_units_of_time, unit_fault
 from thermicon.base.numbers.arrays import Array
-from thermicon.base.words.near_words import nearest_words
 
 from .keys import FitError
 
@@ -166,15 +166,13 @@ def _check_times(name: str, time: Array) -> None:
 MOST_MB = 200.0
 NAMES = ("time_s", *DRIVES, *MEASURED)
 CURE = "leave the cell empty"
-MISSPELT = 0.85
-"""A name of a column that is so much alike a known one, and of its unit, is taken for a slip of the pen."""
 
 
 def read_log(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None = None) -> Log:
     r"""Read a measured log: a table with a line of names, its cells separated by commas, semicolons or tabs.
 
-    A table of pandas is read as the file that it would write. `columns` says what the file calls ours, such as
-    {"display_C": "T1"}, where that does not follow from its names.
+    A table of pandas is read as the file that it would write, with its index where that holds times. `columns` says
+    what the file calls ours, such as {"display_C": "T1"}, where that does not follow from its names.
     Raises LogError for a file that is not a log, with its line or column and the cure.
 
     >>> import tempfile
@@ -188,16 +186,12 @@ def read_log(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None 
     if isinstance(path, str | Path):
         where, data = Path(path), read_bytes(Path(path), "log", MOST_MB, LogError)
     else:
-        where, data = Path("table"), path.to_csv(index=False).encode()
+        timed = path.index.dtype.kind in "mMf" and "time_s" not in path.columns  # clocks, elapsed times, or seconds
+        where, data = Path("table"), path.to_csv(index=timed, index_label="time_s").encode()
     table = read_table(data, table_fault(where, LogError), "time_s,current_A,…", MOST_ROWS, NAMES, columns)
     wanted = [name for name in dict.fromkeys(table.header) if is_known(name)]
-    absent = {name.lower(): name for name in NAMES if name not in table.header}
-    for cell in table.header:
-        close = "" if is_known(cell) else absent.get("".join(nearest_words(cell.lower(), absent, 1, MISSPELT)), "")
-        if close and cell[-2:] == close[-2:]:
-            what, cure = f"{cell}: did you mean {close}? Found {table.found}", "remove the column, or say so"
-            raise table.fault("table", table.line, what, cure).to(columns={close: cell})
-    if table.names.doubtful or not wanted:
+    blind = not any(name.endswith("_C") for name in wanted)
+    if table.names.doubtful or not wanted or (blind and any(is_reading(cell, "C", ()) for cell in table.header)):
         raise missing(table, "display_C", f"one of {', '.join(NAMES[1:])}")
     found = measured(table, wanted, CURE)
     unused = ", ".join([name for name in table.header if name not in ("time_s", "icon", "", *wanted)][:8])

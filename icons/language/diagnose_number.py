@@ -11,6 +11,7 @@ from ..model.words import (
     EXAMPLES,
     NUMBER_WORDS,
     WAVES,
+    fahrenheit,
     nearest,
     nearest_unit,
     scaled,
@@ -27,6 +28,7 @@ _WANTED = {
 }
 _OPERATORS = (":", "/", "*", "×", "·", "÷", "^", "+", *DASHES)
 _DEGREES = ("°", "º", "˚", "deg", "degree", "degrees")
+_FAHRENHEIT = re.compile(r"(?i)([°º˚]|deg)f(/(s|min))?|fahrenheit")
 _PERIODS = ("period", "periods", "cycle", "cycles", "times", "oscillations")
 
 
@@ -95,8 +97,11 @@ def unit(case: FailedStatement) -> Finding | None:
         return at(
             whole, "E103", f'"{whole.text}" is not a unit', 'a unit must not contain spaces: "°C" or "degC"', cure
         )
-    if bad.text in _DEGREES and re.fullmatch(r"[Ff](/.*)?|fahrenheit", case.next()):
-        return at(bad, "E103", "degrees Fahrenheit are not a unit of this language", EXAMPLES[kind])
+    last = case.rest[0] if bad.text in _DEGREES and re.fullmatch(r"[Ff](/.*)?|fahrenheit", case.next()) else bad
+    if last is not bad or _FAHRENHEIT.fullmatch(bad.text):
+        size = fahrenheit(number.text, "".join(last.text.partition("/")[1:]), kind)
+        converted = (Patch(number.start, last.end, size),) if size else ()
+        return at(bad, "E103", "degrees Fahrenheit are not a unit of this language", EXAMPLES[kind], *converted)
     if others:
         return _wrong_kind(case, kind, others)
     if kind == "time" and (found := _periods(case)):
@@ -142,7 +147,8 @@ def _periods(case: FailedStatement) -> Finding | None:
     every = case.find("every")
     period = case.quantity(every + 1) if every is not None else None
     if bad.text in _PERIODS and period is not None:
-        cure = Patch(case.pieces[case.index - 1].start, bad.end, f"{number[0] * period[0]:.6g} {period[1]}")
+        cut = " cut" if number[0] % 1 and case.find("cut") is None else ""  # it does not end where it began
+        cure = Patch(case.pieces[case.index - 1].start, bad.end, f"{number[0] * period[0]:.6g} {period[1]}{cut}")
         return at(bad, "E103", f'"{bad.text}" is not a unit', "a wave lasts a time, such as: for 12 s", cure)
     return None
 

@@ -100,6 +100,17 @@ def scaled(number: str, unit: str, kind: Kind) -> str | None:
         return None
 
 
+def fahrenheit(number: str, per: str, kind: Kind) -> str | None:
+    """Return a number in °F, or in °F ``per`` a time such as "/s", in °C; None where no such number is needed."""
+    if f"°C{per}" not in UNITS[kind]:
+        return None
+    try:
+        celsius = (exact_number(number) - (32 if kind == "absolute" else 0)) * Fraction(5, 9)
+    except ValueError:
+        return None
+    return f"{decimal_text(round(float(celsius), 2))} °C{per}"
+
+
 def unit_kinds(unit: str) -> list[Kind]:
     """Return the kinds of quantity that a unit can measure: none for an unknown unit."""
     return [kind for kind, units in UNITS.items() if unit in units and kind not in ("change", "count")]

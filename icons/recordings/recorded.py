@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Literal
 
 from thermicon.base.checks.arguments import InputError, checked
-from thermicon.base.files.measured_table import measured, missing
+from thermicon.base.files.column_choice import is_setting
+from thermicon.base.files.measured_table import candidates, measured, missing
 from thermicon.base.files.table import Table, read_table
 from thermicon.base.files.units import like_units_of_time
 from thermicon.base.words.clean_text import name_fault
@@ -35,6 +36,8 @@ NAMES = (TIME, *CONTROL_OF)
 
 MOST_ROWS, MOST_MB = 1_000_000, 200
 """Rows of a recording, about five minutes at 3 kHz, and room for them with many further columns."""
+SHORTEST_READ_S = 0.01
+"""Nothing that is shorter is a course on skin: its times are in another unit, or have too few digits."""
 EXAMPLE = f"{TIME},temperature_C"
 _CURE = "fill it in, or remove the row; between readings the course is taken as linear"
 _CODES = {"table": "E013", "size": "E004", "cell": "E014", "empty": "E005", "binary": "E006",
@@ -203,7 +206,7 @@ def _readings(file: str, data: bytes, column: str | None, columns: Mapping[str, 
     theirs = {**(columns or {}), **({"temperature_C": own} if own else {})}
     table = read_table(data, fault, EXAMPLE, MOST_ROWS, NAMES, theirs)
     given = next((name for name in theirs if name in CONTROL_OF and name in table.names.renamed), column)
-    chosen = _column(f"{file}:{table.line}", table, given)
+    chosen = _column(f"{file}:{table.line}", table, given, columns)
     found = measured(table, [chosen], _CURE, gaps=False, steps=True)
     times, levels = found.time_s.tolist(), found.columns[chosen].tolist()
     if (length := times[-1] - times[0]) > LONGEST_S:
@@ -211,6 +214,8 @@ def _readings(file: str, data: bytes, column: str | None, columns: Mapping[str, 
         help = f"if these are {like[0]}, {like[1]}; otherwise cut the file" if like else "cut the file"
         what = f"{TIME} runs over {length:,.6g} s"
         raise whole_file("E221", file, what, f"an icon lasts at most {LONGEST_S:g} s; {help}")
+    if length < SHORTEST_READ_S:
+        raise table.fault("time", None, f"{TIME} runs over {length:g} s", "check the unit of the times")
     for line, level in zip(found.lines, levels, strict=True):
         if not LOWEST_C <= level <= HIGHEST_C:
             what = f"{chosen} is {level:g}; an icon keeps to {LOWEST_C:g} to {HIGHEST_C:g} °C".replace("-", "−")
@@ -235,14 +240,17 @@ def _gap_notes(time_s: tuple[float, ...]) -> list[str]:
     return [f"{what}: the icon goes straight across"] if begins else []
 
 
-def _column(place: str, table: Table, column: str | None) -> str:
+def _column(place: str, table: Table, column: str | None, columns: Mapping[str, str] | None) -> str:
+    if lost := [name for name in columns or {} if name in table.lost]:
+        raise table.fault("table", table.line or None, table.lost[lost[0]], "the name must be spelled as in the file")
     known = [cell for cell in table.header if cell in CONTROL_OF]
-    if column is None and len(known) > 1:
+    readings = [name for name in known if not is_setting(name.rpartition("_")[0])]
+    if column is None and len(known) > 1 and len(readings) != 1:
         what = f"{' and '.join((', '.join(known[:-1]), known[-1]))} are all temperatures"
-        raise whole_file("E013", place, what, "say which").to(column=known[0])
-    if column is None and not known:
+        raise whole_file("E013", place, what, "say which").to(column=[*readings, *known][0])
+    if column is None and not readings and (not known or candidates(table, "temperature_C")):
         raise missing(table, "temperature_C", f"or {', '.join(list(CONTROL_OF)[1:])}")
-    chosen = column or known[0]
+    chosen = column or (readings or known)[0]
     if chosen not in table.header or chosen == TIME:
         what = f"no temperature is called {chosen!r}; found {table.found}"
         raise whole_file("E013", place, what, "the name must be spelled as in the file")

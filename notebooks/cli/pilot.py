@@ -48,10 +48,17 @@ def pilot_command(
         list[Path] | None,
         out(
             "TRIALS.csv",
-            "Sharpen the prediction by answers: columns participant, trial, presented, responded (none: not felt). "
-            "Or by measurements: participant, kind (threshold, reaction_time, rating), method, channel, size_K, value, "
-            "unit, standard_error, trials.",
+            "Sharpen the prediction by answers: columns participant, trial, presented, responded (none: not felt); "
+            "given again for each participant, one file each.",
             "--answers",
+        ),
+    ] = None,
+    measurements: Annotated[
+        list[Path] | None,
+        out(
+            "VALUES.csv",
+            "Sharpen the prediction by measurements: participant, kind (threshold, reaction_time, rating), method, "
+            "channel, size_K, value, unit, standard_error, trials.",
             "--measurements",
         ),
     ] = None,
@@ -97,8 +104,9 @@ def pilot_command(
     draw of the posterior with people of its own: those that make the answers likely count more. With the JSON of a
     ranking beside its FILES, that prediction is scored on the answers as it was sealed.
     """
-    if answers is not None and len(answers) > 1:
-        raise usage("give one file of answers or of measurements, not both", "--answers' / '--measurements")
+    if (answers and measurements) or len(measurements or ()) > 1:
+        raise usage("give files of answers, or one file of measurements", "--answers' / '--measurements")
+    data = answers or measurements
     sealed = [name for name in files if name.lower().endswith(".json")]
     if sealed and (answers is None or len(sealed) > 1 or len(sealed) == len(files)):
         raise usage(
@@ -106,9 +114,9 @@ def pilot_command(
         )
     planned = {"--participants": participants, "--trials": trials, "--wanted": wanted}
     given = {"--keep": keep, "--column": column, "--figure": figure.figure}
-    for option, value in (planned if answers is not None else given).items():
+    for option, value in (planned if data is not None else given).items():
         if value is not None:
-            raise usage("belongs to a plan, before there are answers" if answers else "needs --answers FILE", option)
+            raise usage("belongs to a plan, before there are answers" if data else "needs --answers FILE", option)
     if json is not None:
         check_output(json, (".json",), "JSON")
     if answers is not None and sealed:
@@ -116,11 +124,12 @@ def pilot_command(
             option = "--keep" if keep is not None else "--figure"
             raise usage("belongs to answers without a sealed prediction, which is scored as it is", option)
         open_sealed(
-            Path(sealed[0]), answers[0], theirs_of(column), [name for name in files if name not in sealed], rig, json
+            Path(sealed[0]), answers, theirs_of(column), [name for name in files if name not in sealed], rig, json
         )
         return
-    if answers is not None:
-        condition(answers[0], theirs_of(column), files, crowd, rig, figure, keep, draws or USUAL_DRAWS, json)
+    if data is not None:
+        measured = data is measurements
+        condition(data, measured, theirs_of(column), files, crowd, rig, figure, keep, draws or USUAL_DRAWS, json)
         return
     people = _numbers(participants or PARTICIPANTS, "--participants", 2, MOST_PARTICIPANTS)
     times = _numbers(trials or TRIALS, "--trials", 1, MOST_TRIALS)
@@ -175,10 +184,10 @@ def plan_experiment(
 
 
 def open_sealed(
-    sealed: Path, answers: Path, theirs: dict[str, str], files: Sequence[str], rig: RigOptions, json: Path | None
+    sealed: Path, answers: list[Path], theirs: dict[str, str], files: Sequence[str], rig: RigOptions, json: Path | None
 ) -> None:
     """Score a sealed prediction on answers; show and write it."""
-    check_separate([sealed, answers, *files], [json])
+    check_separate([sealed, *answers, *files], [json])
     from thermicon.perception.pilot.sealed import opened, read_sealed
     from thermicon.perception.pilot.trials_file import read_trials
 
@@ -198,7 +207,8 @@ def open_sealed(
 
 
 def condition(
-    answers: Path,
+    answers: list[Path],
+    measured: bool,
     theirs: dict[str, str],
     files: Sequence[str],
     crowd: ObserverOptions,
@@ -215,10 +225,11 @@ def condition(
         if keep == STDOUT:
             raise usage("- is not a file; give a name such as lab.toml", "--keep")
         check_output(drawn, (".csv",), "a table of draws")
-    check_separate([answers, *files, *([crowd.observer] if crowd.observer else [])], [json, keep, drawn, figure.figure])
+    read: list[str | Path] = [*answers, *files, *([crowd.observer] if crowd.observer else [])]
+    check_separate(read, [json, keep, drawn, figure.figure])
     if there := [str(path) for path in (keep, drawn) if path is not None and path.exists()]:
         raise OutputError(f"{' and '.join(there)} already there and kept; give --keep another name, or move them away")
-    from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
+    from thermicon.perception.pilot.measurements_file import read_measurements
     from thermicon.perception.pilot.observed import observed
     from thermicon.perception.pilot.trials_file import read_trials
 
@@ -230,8 +241,8 @@ def condition(
     where = rig.load(icons, files[0])
     model = crowd.load(where, NEEDS)
     data: Trials | Measurements
-    if is_measurements(answers, theirs):
-        data = read_measurements(answers, where, theirs)
+    if measured:
+        data = read_measurements(answers[0], where, theirs)
     else:
         with noted():
             data = read_trials(answers, [icon.name for icon in icons], theirs)

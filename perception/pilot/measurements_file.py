@@ -112,13 +112,6 @@ class Measurements:
         return f"Measurements({', '.join(words)})"
 
 
-def is_measurements(path: str | Path, columns: Mapping[str, str] | None = None) -> bool:
-    """Whether the header of a file is that of measurements, not of trials."""
-    names = ("presented", *COLUMNS)
-    table, _ = table_in(Path(path), names, EXAMPLE, "table of trials or measurements", columns)
-    return "presented" not in table.header and any(mark in table.header for mark in ("kind", "value"))
-
-
 @checked
 def read_measurements(
     path: str | Path, rig: AnyRig = "thenar", columns: Mapping[str, str] | None = None

@@ -12,7 +12,8 @@ import numpy as np
 
 from thermicon.base.checks.arguments import checked
 from thermicon.base.files.inputs import InputError, line_fault, quoted, read_bytes, table_fault
-from thermicon.base.files.table import NOTHINGS, Table, as_number, read_table
+from thermicon.base.files.layout import NOTHINGS
+from thermicon.base.files.table import Table, as_number, read_table
 from thermicon.base.numbers.arrays import Array
 from thermicon.base.words.near_words import did_you_mean, nearest_words
 from thermicon.icons import IconSet
@@ -32,9 +33,20 @@ UNFELT = ("", "none", "no answer", "no response", "no_response", "not felt", "ti
 """What experiments write where nothing was answered: the play was not felt."""
 NOTHING = (*UNFELT, "missing", *NOTHINGS)
 """The same, and what stands for trials that are lost: these are none."""
-WIDE = re.compile(r"(?:trial[_ .-]?(\d+)[_ .-])?(icon|presented|answer|respon(?:ded|se)|trial)[_ .-]?(\d+)?", re.I)
-ASKED, WIDE_EXAMPLE = ("icon", "presented"), "participant,icon_1,answer_1,icon_2,answer_2"
+WIDE = re.compile(
+    r"(?:trial[_ .-]?(\d+)[_ .-])?(icon|presented|shown|stimulus|answer|respon(?:ded|se)|trial)[_ .-]?(\d+)?", re.I
+)
+ASKED, WIDE_EXAMPLE = ("icon", "presented", "shown", "stimulus"), "participant,icon_1,answer_1,icon_2,answer_2"
 """Words of `WIDE` for what was presented, and how such a line begins."""
+
+OTHERS = {
+    "participant": "(?i)participant|subj|who|vp|person|proband|^id$",
+    "trial": "(?i)^trial|trial_?(n|index|number)|^n[or]$",
+    "presented": "(?i)icon|shown|stim|target",
+    "responded": "(?i)answer|respon|key|choice|guess",
+}
+"""How experiments call our columns; of several, the first is proposed."""
+ENDING = re.compile(r"(?i)\.(csv|cue|json|txt|toml|wav|png|mp4)$")
 
 
 class TrialsError(InputError):
@@ -43,7 +55,9 @@ class TrialsError(InputError):
 
 @checked
 def read_trials(
-    path: str | Path, icons: IconSet | str | Path | Sequence[str], columns: Mapping[str, str] | None = None
+    path: str | Path | Sequence[str | Path],
+    icons: IconSet | str | Path | Sequence[str],
+    columns: Mapping[str, str] | None = None,
 ) -> Trials:
     """Read the answers of an identification experiment to icons of a set, whose names are all answers that there are.
 
@@ -51,16 +65,17 @@ def read_trials(
     also block; or one row per participant with icon_1, answer_1 and so on; or a matrix of counts, a row for each icon
     presented and a column for each answer, which is one group. Other columns are left alone, semicolons and tabs also
     separate them, and lines that begin with # are comments. A play that was not felt has an answer of `UNFELT`, such as
-    an empty cell; others of `NOTHING`, such as missing, are no trials. Participants are in the order of the file.
+    an empty cell; others of `NOTHING`, such as missing, are no trials. Participants are in the order of the file. Icons
+    may be written with other cases, with _ or a space for -, and as files with a folder.
 
     Parameters
     ----------
     path
-        The file.
+        The file, or several, each of a participant, who is called like it where no column says it.
     icons
         The set, its name or file, or the names of its icons.
     columns
-        What the file calls ours, such as ``{"responded": "answer"}``.
+        What the file calls ours, such as ``{"responded": "answer"}``, and its icons, such as ``{"dip": "num_2"}``.
 
     Returns
     -------
@@ -81,38 +96,51 @@ def read_trials(
     ...     read_trials(path, ["cool", "warm"])
     Trials(1 participant, 2 trials, 2 icons)
     """
-    file, given = Path(path), set_of(icons) if isinstance(icons, str | Path) else icons
+    given = set_of(icons) if isinstance(icons, str | Path) else icons
+    files = [Path(path)] if isinstance(path, str | Path) else [Path(each) for each in path]
+    if not files:
+        raise TrialsError("no file of answers is given; give at least one")
     names = tuple(each if isinstance(each, str) else each.name for each in given)
     places = {name: place for place, name in enumerate(names)}
-    table, digest = table_in(file, (*COLUMNS, "block"), EXAMPLE, WHAT, columns)
-    if not set(COLUMNS) & set(table.header) and not any(map(WIDE.fullmatch, table.header)):
-        grid, _ = table_in(file, names, EXAMPLE, WHAT)
-        table = grid if len(grid.rows) <= len(names) + 1 else table
-    if "responded" not in table.header and len(places.keys() & set(table.header)) > 1:
-        matrix = _matrix(file, table, places)
-        return replace(_counted(matrix[None], names, ("all",), file.name, digest), grouped=True)
+    theirs = {name: cell for name, cell in (columns or {}).items() if name not in places}
+    meant = _Cells(places, {cell: name for name, cell in (columns or {}).items() if name in places})
     runs: dict[str, list[dict[tuple[str, str], tuple[int, int]]]] = {}
     lines: dict[tuple[str, tuple[str, str]], int] = {}
-    passed, strange = 0, ("", "")
+    passed, strange, digests, owner = 0, ("", ""), list[str](), dict[str, Path]()
     folded = [name.casefold() for name in names]
-    for line, (participant, block, number, *cells) in _asked(file, table):
-        where = f"{file}:{line}"
-        icon, answer = ("" if cell not in places and cell.casefold() in NOTHING else cell for cell in cells)
-        silent = len(names) + (cells[1].casefold() not in UNFELT)
-        if answer not in places and icon not in places and not nearest_words(icon.casefold(), folded, 1, ALIKE):
-            passed, strange = passed + 1, strange if strange[0] else (icon, where)
-            continue
-        person, trial = label(participant, "participant", where), label(number, "trial", where)
-        key, own = (block, trial), runs.setdefault(person, [{}])
-        if key in own[-1]:
-            if len(own[-1]) == 1 or key != next(iter(own[-1])):
-                raise TrialsError(
-                    f"{where}: participant {quoted(person)} has trial {quoted(trial)} twice, also in line "
-                    f"{lines[person, key]}; number the trials on, add a column block, or remove the copy"
-                )
-            own.append({})  # the numbers start anew, as they do with each block
-        lines[person, key], shown = line, places[_icon(icon, "presented", places, where)]
-        own[-1][key] = shown, places[_icon(answer, "responded", places, where)] if answer else silent
+    for file in files:
+        table, digest = table_in(file, (*COLUMNS, "block"), EXAMPLE, WHAT, theirs)
+        digests.append(digest)
+        if not set(COLUMNS) & set(table.header) and not any(map(WIDE.fullmatch, table.header)):
+            grid, _ = table_in(file, names, EXAMPLE, WHAT)
+            table = grid if len(grid.rows) <= len(names) + 1 else table
+        if "responded" not in table.header and len(places.keys() & set(table.header)) > 1:
+            if len(files) > 1:
+                raise TrialsError(f"{file}: a matrix of counts stands alone; give it without other files")
+            matrix = _matrix(file, table, places)
+            return replace(_counted(matrix[None], names, ("all",), file.name, digest), grouped=True)
+        for line, (participant, block, number, *said) in _asked(file, table, len(files) > 1):
+            where = f"{file}:{line}"
+            cells = [meant.icon(cell) for cell in said]
+            icon, answer = ("" if cell not in places and cell.casefold() in NOTHING else cell for cell in cells)
+            silent = len(names) + (cells[1].casefold() not in UNFELT)
+            if answer not in places and icon not in places and not nearest_words(icon.casefold(), folded, 1, ALIKE):
+                passed, strange = passed + 1, strange if strange[0] else (icon, where)
+                continue
+            person, trial = label(participant, "participant", where), label(number, "trial", where)
+            person = person if owner.setdefault(person, file) == file else file.stem
+            key, own = (block, trial), runs.setdefault(person, [{}])
+            if key in own[-1]:
+                if len(own[-1]) == 1 or key != next(iter(own[-1])):
+                    raise TrialsError(
+                        f"{where}: participant {quoted(person)} has trial {quoted(trial)} twice, also in line "
+                        f"{lines[person, key]}; number the trials on, add a column block, or remove the copy"
+                    )
+                own.append({})  # the numbers start anew, as they do with each block
+            lines[person, key], shown = line, places[_icon(icon, "presented", places, where)]
+            own[-1][key] = shown, places[_icon(answer, "responded", places, where)] if answer else silent
+    file = files[0]
+    digest = digests[0] if len(files) == 1 else hashlib.sha256("".join(digests).encode()).hexdigest()[:16]
     check_labels(file, runs)
     counts = np.zeros((len(runs), len(names), len(names) + 2))
     for place, (person, own) in enumerate(runs.items()):
@@ -129,6 +157,26 @@ def read_trials(
     return replace(_counted(counts, names, tuple(runs), file.name, digest), passed=passed)
 
 
+class _Cells:
+    """Icons that cells mean: by their names, by what a user said, by case and _, and by the name of a file."""
+
+    def __init__(self, places: Mapping[str, int], said: Mapping[str, str]) -> None:
+        self.known = {**{name: name for name in places}, **said}
+        self.plain: dict[str, list[str]] = {}
+        for cell, name in self.known.items():
+            self.plain.setdefault(_plain(cell), []).append(name)
+
+    def icon(self, cell: str) -> str:
+        """The icon that a cell means; the cell itself where it means none, or several."""
+        alike = self.plain.get(_plain(cell), [])
+        return self.known.get(cell, alike[0] if len(alike) == 1 else cell)
+
+
+def _plain(cell: str) -> str:
+    """A name without folder, ending, case and kind of space."""
+    return re.sub(r"[\s_]+", "-", ENDING.sub("", re.split(r"[/\\]", cell)[-1])).casefold()
+
+
 def _counted(counts: Array, icons: tuple[str, ...], people: tuple[str, ...], file: str, digest: str) -> Trials:
     """Trials from counts (participants, icons, answers, not felt, missing); who has none took no part."""
     there = np.flatnonzero(counts[..., :-1].any(axis=(1, 2)))
@@ -137,22 +185,28 @@ def _counted(counts: Array, icons: tuple[str, ...], people: tuple[str, ...], fil
     return Trials(icons, who, own[..., :-2], file, digest, own[..., -2], missing=lost)
 
 
-def _asked(path: Path, table: Table) -> Iterator[tuple[int, list[str]]]:
-    """Line, and participant, block, trial, icon and answer of each trial, from one row per trial or per participant."""
+def _asked(path: Path, table: Table, each: bool) -> Iterator[tuple[int, list[str]]]:
+    """Line, and participant, block, trial, icon and answer of each trial, from one row per trial or per participant.
+
+    Where `each` file is of a participant, it is called like the file where it has no such column.
+    """
+    own = path.stem if each and "participant" not in table.header else ""
     found = {(m[1] or m[3], m[2].lower() in ASKED): m[0] for m in map(WIDE.fullmatch, table.header) if m}
     numbers = dict.fromkeys(number for number, asked in found if number and asked and "presented" not in table.header)
     if not numbers:
-        require(path, table, COLUMNS, f"{EXAMPLE}, or, with one row per participant, {WIDE_EXAMPLE}")
+        require(
+            path, table, COLUMNS[1:] if own else COLUMNS, f"{EXAMPLE}, or, with one row per participant, {WIDE_EXAMPLE}"
+        )
         for line, row in table.records((*COLUMNS, "block")):
-            yield line, [row["participant"], row.get("block", ""), *(row[column] for column in COLUMNS[1:])]
+            yield line, [own or row["participant"], row.get("block", ""), *(row[column] for column in COLUMNS[1:])]
         return
-    require(path, table, COLUMNS[:1], WIDE_EXAMPLE)
+    require(path, table, () if own else COLUMNS[:1], WIDE_EXAMPLE)
     if single := [name for (number, asked), name in found.items() if number and (number, not asked) not in found]:
         raise TrialsError(f"{path}:{table.line}: {single[0]} stands alone; a trial has two columns: {WIDE_EXAMPLE}")
     for line, row in table.records(("participant", "block", *found.values())):
         for number in numbers:
             pair = row[found[number, True]], row[found[number, False]]
-            yield line, [row["participant"], row.get("block", ""), number, *pair]
+            yield line, [own or row["participant"], row.get("block", ""), number, *pair]
 
 
 def _matrix(path: Path, table: Table, places: Mapping[str, int]) -> Array:
@@ -177,7 +231,9 @@ def _matrix(path: Path, table: Table, places: Mapping[str, int]) -> Array:
     sums = counts.sum(axis=1)
     if not counts[:, :-2].any():
         raise TrialsError(f"{path}: every count is 0; write how often each answer was given")
-    if (np.abs(sums[sums > 0] - 100) <= 1).all():
+    if (np.abs(sums[sums > 0] - 100) <= 1).all() and (sums[sums > 0] != 100).any():
+        raise TrialsError(f"{path}: the rows sum to 99 to 101: these are per cents; {PER_CENT}")
+    if (sums[sums > 0] == 100).all():
         warnings.warn(f"{path}: the rows sum to 100, read as counts; if they are per cents, {PER_CENT}", stacklevel=3)
     return counts
 
@@ -194,10 +250,15 @@ def table_in(
 def require(path: Path, table: Table, needed: Sequence[str], example: str) -> None:
     """Raise a TrialsError where columns are missing, which lists those that were found, or where there is no row."""
     if missing := [name for name in needed if name not in table.header]:
+        if "presented" in needed and {"kind", "value"} <= set(table.header):
+            raise TrialsError(f"{path}:{table.line}: these are measurements, not answers; give them as measurements")
+        free = [cell for cell in table.header if cell and cell not in (*needed, *table.names.renamed)]
+        others = {name: [cell for cell in free if re.search(OTHERS.get(name, "$."), cell)] for name in missing}
+        known = {name: cells[0] for name, cells in others.items() if cells}
         raise TrialsError(
             f"{path}:{table.line}: {'column' if len(missing) == 1 else 'columns'} missing: {', '.join(missing)}; "
             f"found: {table.found}; write a line such as: {example}; or say what they are called"
-        ).to(columns={missing[0]: "THEIRS"})
+        ).to(columns=known or {missing[0]: "THEIRS"})
     if not table.rows:
         raise TrialsError(f"{path}: no row below the names of the columns; write one row per trial")
 
@@ -232,8 +293,8 @@ def _icon(cell: str, column: str, known: Mapping[str, int], where: str) -> str:
     name = label(cell, column, where)
     if name in known:
         return name
-    same = [icon for icon in known if icon.casefold() == name.casefold()]
-    hint = f"did you mean {same[0]}? Names differ by case" if same else did_you_mean(name, known)
     where_to = {"responded": "; where nobody answered, leave the cell empty", "a column": "; leave out totals"}
-    cure = "" if same else where_to.get(column, "")
-    raise TrialsError(f"{where}: {column} is {quoted(name)}, which is not an icon of the set; {hint}{cure}")
+    hint = f"{did_you_mean(name, known)}{where_to.get(column, '')}; or say which it stands for"
+    raise TrialsError(f"{where}: {column} is {quoted(name)}, which is not an icon of the set; {hint}").to(
+        columns={next(iter(nearest_words(name, known)), "ICON"): name}
+    )

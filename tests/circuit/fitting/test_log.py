@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from tests.builders import messages
@@ -154,6 +155,17 @@ def test_a_table_that_is_no_log_is_refused_with_its_line(change: str, message: s
     text = GOOD.replace(*json.loads(change)) if change.startswith("[") else change
     with pytest.raises(LogError, match=f"rig.csv.*{message}"):
         read_log(saved(tmp_path, text))
+
+
+@pytest.mark.parametrize("unit", ["s", "timedelta", "datetime"])
+def test_the_index_of_a_table_of_pandas_may_hold_its_times(unit: str) -> None:
+    seconds = np.arange(40) / 10
+    index = {"s": pd.Index(seconds), "timedelta": pd.to_timedelta(seconds, "s"),
+             "datetime": pd.Timestamp("2026-03-02 23:59:58") + pd.to_timedelta(seconds, "s")}[unit]  # fmt: skip
+    frame = pd.DataFrame({"current_A": 0.1, "display_C": 32 + seconds / 10}, index=index)
+    assert read_log(frame).time_s - read_log(frame).time_s[0] == pytest.approx(seconds)
+    filtered = frame.reset_index(names="time_s")[::2]
+    assert read_log(filtered).time_s[1] - read_log(filtered).time_s[0] == pytest.approx(0.2)
 
 
 def test_gaps_are_empty_cells_or_nan_or_missing_cells(tmp_path: Path) -> None:

@@ -63,9 +63,9 @@ def test_what_a_log_does_not_show_is_named_with_the_cure(cli: Cli, log: Path, tm
 @pytest.mark.parametrize(
     ("change", "more", "code", "words"),
     [
-        (("display_C", "Displey_C"), RATE, 1, "Displey_C: did you mean display_C?"),
+        (("display_C", "Displey_C"), RATE, 0, "'Displey_C' is taken as display_C, as the only column in °C"),
         ((r"\n(\d\.450000,[^,]*),[^,]*", r"\n\1,n/a"), RATE, 0, "display_C is 'n/a' in 10 of"),
-        (("current_A", "amps"), RATE, 1, "no log has a drive: one of current_A or"),
+        (("current_A", "drive"), RATE, 1, "no log has a drive: one of current_A or"),
         (("", ""), (*RATE, "--column", "skin_C=T9"), 2, "no column is called 'T9', to be skin_C; found time_s, curr"),
         (("", ""), (*RATE, "rig.csv"), 1, ["has the same content as", "name it once"]),
         (("", ""), ("--rig", "tcs2"), 1, "rig tcs2 is a thermode, whose display is the drive: display_C with skin_C"),

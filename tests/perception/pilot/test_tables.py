@@ -10,7 +10,7 @@ import pytest
 from tests.builders import messages
 from thermicon.circuit import Rig
 from thermicon.perception.pilot import trials_file
-from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
+from thermicon.perception.pilot.measurements_file import read_measurements
 from thermicon.perception.pilot.trials import score
 from thermicon.perception.pilot.trials_file import TrialsError, read_trials
 
@@ -192,11 +192,44 @@ def test_values_units_defaults_and_gaps_are_read(tmp_path: Path, rig: Rig) -> No
     assert len(found.digest) == 16
 
 
-def test_a_table_of_measurements_is_recognised_by_its_header(tmp_path: Path) -> None:
-    assert is_measurements(written(tmp_path, *GOOD, head=VALUES))
-    assert is_measurements(written(tmp_path, head="participant;kind;channel"))
-    assert is_measurements(written(tmp_path, *GOOD, head=f"Thresholds of the winter\n\n{VALUES}"))
-    assert not is_measurements(written(tmp_path, head=f"our kind of values\n{HEAD}"))
+def test_measurements_that_are_given_as_answers_are_told_where_they_belong(tmp_path: Path) -> None:
+    with pytest.raises(TrialsError, match="these are measurements, not answers; give them as measurements"):
+        read_trials(written(tmp_path, *GOOD, head=VALUES), ICONS)
+
+
+@pytest.mark.parametrize("cell", ["drives/cool-step.csv", r"C:\icons\Cool_Step.wav", "COOL STEP", "num_2"])
+def test_a_cell_means_an_icon_by_its_name_its_file_or_what_is_said_of_it(tmp_path: Path, cell: str) -> None:
+    found = read_trials(written(tmp_path, f"P1,1,{cell},dip", f"P1,2,dip,{cell}"), ICONS, {"cool-step": "num_2"})
+    assert found.pooled[ICONS.index("cool-step"), ICONS.index("dip")] == 1
+    assert found.pooled[ICONS.index("dip"), ICONS.index("cool-step")] == 1
+    with pytest.raises(TrialsError, match=r"'num_3', which is not an icon .*ICON.: .num_3"):
+        read_trials(written(tmp_path, "P1,1,num_3,num_3"), ICONS)
+
+
+def test_two_icons_that_are_written_alike_need_their_own_names(tmp_path: Path) -> None:
+    found = read_trials(written(tmp_path, "P1,1,a_b,A-b"), ("a-b", "A-b", "a_b"))
+    assert found.pooled.tolist() == [[0, 0, 0], [0, 0, 0], [0, 1, 0]]
+    with pytest.raises(TrialsError, match="'A_B', which is not an icon"):
+        read_trials(written(tmp_path, "P1,1,A_B,a-b"), ("a-b", "A-b", "a_b"))
+
+
+def test_files_of_several_people_are_joined_with_a_person_each(tmp_path: Path) -> None:
+    files = list[Path]()
+    for name, head in (("ann", "trial,presented,responded"), ("bob", "trial,presented,responded"), ("cy", HEAD)):
+        (tmp_path / f"{name}.csv").write_text(f"{head}\n" + f"{'C1,' * (head == HEAD)}1,dip,dip\n")
+        files.append(tmp_path / f"{name}.csv")
+    assert read_trials(files, ICONS).participants == ("ann", "bob", "C1")
+    (tmp_path / "dan.csv").write_text(f"{HEAD}\nC1,1,dip,cool-step\n")
+    found = read_trials([*files, tmp_path / "dan.csv"], ICONS)
+    assert found.participants == ("ann", "bob", "C1", "dan") and found.total == 4
+    assert found.digest != read_trials(files, ICONS).digest
+
+
+def test_rounded_per_cents_are_asked_for_their_trials(tmp_path: Path) -> None:
+    head = ",dip,cool-step"
+    with pytest.raises(TrialsError, match="rows sum to 99 to 101: these are per cents; write numbers of answers"):
+        read_trials(written(tmp_path, "dip,62,37", "cool-step,0,100", head=head), ICONS)
+    assert read_trials(written(tmp_path, "dip,62,36", "cool-step,0,100", head=head), ICONS).total == 198
 
 
 @pytest.mark.parametrize("row", MESSAGES["measurements"])
