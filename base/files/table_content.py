@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import itertools
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -66,7 +67,9 @@ def laid_out(text: str, layout: Layout, fault: Fault, example: str, most_rows: i
     above = "" if gap else "\n".join(layout.above)  # a rate says no times where rows are lost
     content = Content(header, rows, places, layout.line, layout.mark, notes, above)
     lacking = layout.width - len(layout.names) if layout.names and header[0] == "1" else 0
-    if lacking and layout.mark == "," and rows and _with_decimals(rows, lacking):
+    if lacking == 1 and _is_counted(rows):
+        content.header = ["", *with_units(layout.names, layout.units)]  # row numbers have no name in printed tables
+    elif lacking and layout.mark == "," and rows and _with_decimals(rows, lacking):
         content.header = with_units(layout.names, layout.units)
     elif lacking:
         content.line = 0
@@ -121,6 +124,16 @@ def _left_out(layout: Layout, left: Sequence[tuple[int, list[str]]]) -> list[str
         quoted = ", ".join(repr(layout.mark.join(row)[:LONGEST_CELL]) for _, row in sorted(left)[:3])
         notes.append(f"lines that are no rows were left out: {len(left)} ({quoted})")
     return notes
+
+
+def _is_counted(rows: Sequence[list[str]]) -> bool:
+    """Whether the first cells number the rows, and those behind them rise as times do."""
+    try:
+        numbers, behind = [int(row[0]) for row in rows], [float(row[1].replace(",", ".")) for row in rows]
+    except (ValueError, IndexError):
+        return False
+    rising = all(after > before for before, after in itertools.pairwise(behind))
+    return len(rows) > 1 and rising and numbers == list(range(numbers[0], numbers[0] + len(rows)))
 
 
 def _with_decimals(rows: Sequence[list[str]], lacking: int) -> bool:

@@ -60,6 +60,8 @@ def other_format(source: Source) -> tuple[str, str] | None:
     ):
         what = "this is a table, perhaps a recording"
         help = "thermicon convert makes an icon of a recording in CSV"
+        if {"presented", "responded", "kind"}.intersection(tables[0]):
+            what, help = "this is a table of answers or measurements", "thermicon pilot takes it beside a set of icons"
     return None if what is None else (what, help)
 
 

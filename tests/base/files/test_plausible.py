@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.base.files.layout import is_clock, layout_of
+from thermicon.base.files.measured_table import measured
 from thermicon.base.files.table import Table, read_table
 from thermicon.base.files.units import is_days, too_fast, unit_fault
 
@@ -84,3 +85,26 @@ def test_a_preamble_longer_than_the_table_does_not_hide_it() -> None:
     text = "".join(f"Channel {k},type K,range {k}\n" for k in range(40)) + rows("Time (s)", "Plate (°C)", count=5)
     found = layout_of(text, NAMES, {})
     assert (found.names, found.line, found.start) == (["Time (s)", "Plate (°C)"], 41, 41)
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (b"\x89HDF\r\n\x1a\n\0", "HDF5"),
+        (b"XDF:\0", "Lab Streaming Layer"),
+        (b"PK\3\4\0\0\0arr_0.npy\0", "an array of numpy"),
+        (b"PK\3\4\0\0\0xl/workbook.xml\0", "a workbook of Excel"),
+    ],
+)
+def test_other_containers_are_named_with_how_to_save_a_table(data: bytes, words: str) -> None:
+    with pytest.raises(ValueError, match=f"{words}.*CSV"):
+        read_table(data, lambda *about: ValueError(about), "", 9, NAMES)  # type: ignore[arg-type, return-value]
+
+
+def test_the_hour_that_comes_twice_is_read_on_and_another_fall_is_not() -> None:
+    stamps = ["2026-10-25 02:59:58", "2026-10-25 02:59:59", "2026-10-25 02:00:00", "2026-10-25 02:00:01"]
+    text = "time,display_C\n" + "".join(f"{stamp},{32 - k}\n" for k, stamp in enumerate(stamps))
+    found = measured(table(text), ["display_C"], "")
+    assert found.time_s.tolist() == [0, 1, 2, 3] and any("back by an hour" in note for note in found.notes)
+    with pytest.raises(ValueError, match="times must increase"):
+        measured(table(text.replace("02:00:0", "02:20:0")), ["display_C"], "")
