@@ -176,7 +176,7 @@ def test_plan_of_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:
 def test_a_table_of_measurements_conditions_a_set(cli: Cli, two: Path, tmp_path: Path) -> None:
     path, lab, out = (tmp_path / name for name in ("v.csv", "lab.toml", "v.json"))
     path.write_text(VALUES, encoding="utf-8")
-    said = cli("pilot", two, "--answers", path, "--draws", 40, "--keep", lab, "--json", out)
+    said = cli("pilot", two, "--measurements", path, "--draws", 40, "--keep", lab, "--json", out)
     told(
         said,
         *("cold, limits, 1 K/s 2 1.79 K", "warm, choice reaction 2 1.89 s", "Test of fit (posterior predictive): p = "),
