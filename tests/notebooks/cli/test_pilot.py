@@ -187,4 +187,4 @@ def test_a_table_of_measurements_conditions_a_set(cli: Cli, two: Path, tmp_path:
     found = json.loads(out.read_text(encoding="utf-8"))
     assert (found["participants"], found["values"], found["errors_assumed"]) == (2, 5, 1)
     assert len(PosteriorDraws.load(lab.with_suffix(".csv"))) == 20
-    cli.good("pilot", two, "--answers", path, "--draws", 20, "--observer", lab.with_suffix(".csv"))
+    cli.good("pilot", two, "--measurements", path, "--draws", 20, "--observer", lab.with_suffix(".csv"))
