@@ -191,11 +191,6 @@ def noise(value: Array) -> float:
     return float(np.median(bends)) / (0.6745 * math.sqrt(6)) if bends.size else 0.0
 
 
-def _piece(times: Array, at: Array) -> Places:
-    """Return the piece between corners at these times to which each time belongs."""
-    return np.clip(np.searchsorted(times, at, side="right") - 1, 0, len(times) - 2)
-
-
 def _farthest(time: Array, low: Array, high: Array, first: int, last: int) -> int:
     """Return the last reading, up to `last`, to which one line from the first keeps between low and high."""
 

@@ -1,13 +1,13 @@
 """The prediction of each posterior draw for a set.
 
-A draw brings its own spread between people, an offset of the laboratory, and memory: its own, or, since no published
-posterior knows of it, drawn from its intervals, with one form or the other, and odds of its own for every pair.
+A draw brings its own spread between people and an offset of the laboratory. Memory is its own, or, since no published
+posterior knows of it, drawn: one of two forms, and its constants from their intervals. Every pair has odds of its own.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import NamedTuple
@@ -21,6 +21,7 @@ from thermicon.base.numbers.arrays import Array
 from ..kernels.parallel import in_order
 from ..observer.channels import FORM, MEMORY_FORMS, MemoryChoice, MemoryForm, Variable, forms_in
 from ..observer.constants import name_of
+from ..observer.draws import PosteriorDraws
 from ..observer.mechanisms.memory import MEMORY_NAMES, MISSING
 from ..observer.observer import Observer, variant_records
 from ..observer.observer_model import ObserverModel
@@ -103,11 +104,13 @@ class DrawnLaboratory(NamedTuple):
     form: MemoryForm
 
 
-def laboratory_forms(laboratories: int, memory: MemoryChoice, seed: int) -> NDArray[np.int64]:
-    """Places in `MEMORY_FORMS` (laboratories,): of both forms each has half of the laboratories, by chance."""
-    held = [MEMORY_FORMS.index(form) for form in forms_in(memory)]
+def laboratory_forms(held: PosteriorDraws, chosen: Sequence[int], memory: MemoryChoice, seed: int) -> NDArray[np.int64]:
+    """Places in `MEMORY_FORMS` of laboratories around draws: those of the draws, or by chance, half of each form."""
+    if memory == "both" and held.forms is not None:
+        return np.array([MEMORY_FORMS.index(held.forms[k]) for k in chosen])
+    counted = [MEMORY_FORMS.index(form) for form in forms_in(memory)]
     chance = np.random.default_rng(np.random.SeedSequence([seed, 15]))
-    return chance.permutation(np.resize(held, laboratories))
+    return chance.permutation(np.resize(counted, len(chosen)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,9 +134,7 @@ class DrawnLaboratories:
         free = [p for p in memory_parameters(memory, records=model.records) if p.name not in held.memory_names]
         shares = latin(len(free), draws, seed).tolist()
         drawn = [[p.at(share) for p, share in zip(free, row, strict=True)] for row in shares]
-        forms = laboratory_forms(draws, memory, seed)
-        if memory == "both" and held.forms is not None:
-            forms = np.array([MEMORY_FORMS.index(held.forms[k]) for k in chosen])
+        forms = laboratory_forms(held, chosen, memory, seed)
         own = [k for k, name in enumerate(held.memory_names) if name != FORM]
         parts = (held.draws[chosen], held.memory[np.ix_(chosen, own)], np.reshape(drawn, (draws, len(free))))
         values = np.hstack([*parts, forms[:, None], held.new_laboratory(seed)[chosen]])

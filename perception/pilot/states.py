@@ -17,7 +17,7 @@ from thermicon.base.files.records import RecordTable
 from thermicon.base.numbers.arrays import Array
 
 from ..identification.laboratory_draws import Uncertain, laboratory_forms, latin, memory_parameters
-from ..observer.channels import CHANNELS, MEMORY_FORMS, MemoryChoice
+from ..observer.channels import CHANNELS, MemoryChoice
 from ..observer.constants import BETWEEN_LABORATORIES
 from ..observer.draws import PosteriorDraws
 from ..observer.observer import Observer
@@ -115,9 +115,7 @@ class LaboratoryPrior:
         rng = np.random.default_rng(np.random.SeedSequence([seed, 11]))
         normal = normal_scores(latin(self._free, n, seed), OUTERMOST)
         offsets = rng.standard_normal((n, len(CHANNELS)))
-        forms, held = laboratory_forms(n, self.choice, seed), self.draws.forms
-        if self.choice == "both" and held is not None:
-            forms = np.array([MEMORY_FORMS.index(held[k]) for k in chosen])
+        forms = laboratory_forms(self.draws, chosen, self.choice, seed)
         return Laboratories(np.hstack([self._whitened[chosen], normal, offsets]), rng.integers(SEEDS, size=n), forms)
 
     def values(self, some: Laboratories) -> Array:
