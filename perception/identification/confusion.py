@@ -39,7 +39,7 @@ IDENTICAL = 1e-9
 Single = NDArray[np.float32]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Confusion:
     """Confusions of many people, and how accurate they are.
 

@@ -47,7 +47,7 @@ NEW_LABORATORY = (
 """Keys of the intervals of an icon in the JSON of `rank`."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class NewLaboratory:
     """95 % intervals of what a new laboratory will find: people, constants and laboratory together.
 

@@ -22,7 +22,7 @@ from .constants import Both, record_of
 from .observer import Observer, load_thresholds, observer_records
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class People:
     """Persons as columns of shape (n,): decision time in s, lapse 0–1, and multipliers.
 

@@ -227,9 +227,9 @@ class Namings:
         """The answers beside those of the same experiment in these laboratories."""
         return compare(self.trials, simulated, seed=seed)
 
-    def details(self, simulated: Confusions) -> Array:
-        """Proportion named (laboratories, icons) of each icon."""
-        return np.diagonal(simulated.pooled, axis1=1, axis2=2)
+    def details(self, simulated: Confusions, scores: Array) -> Array:
+        """Proportion named (laboratories, icons) of each icon, without the pairs of these scores."""
+        return np.diagonal(simulated.without_scores(scores).pooled, axis1=1, axis2=2)
 
     def provenance(self, where: str) -> tuple[str, ...]:
         """Lines on the answers, and where they were given."""
@@ -314,7 +314,7 @@ class MeasuredValues:
         """Group means beside those of the same measurements in these laboratories."""
         return compare_measurements(self.measurements, simulated, seed=seed)
 
-    def details(self, simulated: SimulatedMeasurements) -> Array:
+    def details(self, simulated: SimulatedMeasurements, scores: Array) -> Array:
         """Log means (laboratories, conditions)."""
         return simulated.mean
 

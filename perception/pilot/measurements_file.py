@@ -59,7 +59,7 @@ NUMBERS = {
 LONGEST_RAMP_S = 120.0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Measurements:
     """Values of some participants under some conditions, each (participants, conditions), in the conditions' units.
 

@@ -38,7 +38,7 @@ D = TypeVar("D", Namings, MeasuredValues)
 F = TypeVar("F", Fit, MeasurementFit)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Observed(Drawn, Tabled, Generic[D, F]):
     """Answers or measurements of participants, their fit to the prediction, and the prediction after them.
 
@@ -119,10 +119,10 @@ class Observed(Drawn, Tabled, Generic[D, F]):
             raise ValueError(f"there are no draws of this laboratory. {self.unusable}")
         # Draws of a laboratory do not know its pairs, which is why they are taken out.
         found, icons = self.conditioned, self.played.icons
-        after = self.confusions_after.with_scores(
-            -known_scores(icons, found.scores, icons, len(found.after), self.seed)
+        after = self.confusions_after.without_scores(
+            known_scores(icons, found.scores, icons, len(found.after), self.seed)
         )
-        details = self.data.details(self.data.with_scores(found.simulated_after, -found.scores))
+        details = self.data.details(found.simulated_after, found.scores)
         predicted = np.column_stack([after.felt_and_named, after.correct, after.bits, details])
         return laboratory_draws(self.prior, self.conditioned, predicted, self.played, self.provenance, self._where)
 

@@ -86,6 +86,10 @@ class Confusions:
         """The same with pairs of scores (laboratories, icons, icons) in units of each laboratory's spread."""
         return self.with_log_odds(pair_log_odds(self.spread[:, None, None], scores))
 
+    def without_scores(self, scores: Array) -> Confusions:
+        """The same as before pairs of these scores were in it."""
+        return self.with_log_odds(-pair_log_odds(self.spread[:, None, None], scores))
+
     def with_log_odds(self, log_odds: Array) -> Confusions:
         """The same with other odds of each answer (laboratories, icons, icons), for all people of a laboratory."""
         return replace(self, probability=normalised(self.probability * np.exp(log_odds[:, None])))

@@ -14,7 +14,7 @@ import numpy as np
 from thermicon.base.numbers.arrays import Array, own_arrays
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Trials:
     """Answers of some participants to the icons of a set.
 

@@ -29,7 +29,7 @@ from .scores import IconScore, PairScore, counted, disagreements
 PERCENTAGE_POINT = 0.01
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Ranking(Drawn, Tabled):
     """A predicted experiment: icons in file order, pairs, the pooled confusion matrix, the whole set.
 

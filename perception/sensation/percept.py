@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Trace
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Percept(Drawn):
     """Sensation over time in d′ units, and whether the nominal person reports it.
 

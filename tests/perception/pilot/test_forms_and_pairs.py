@@ -11,6 +11,7 @@ from tests.perception.pilot.madeup import synthetic_trials
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet
 from thermicon.perception import rank
+from thermicon.perception.identification.pairs import pair_scores
 from thermicon.perception.observer.channels import FORM, MemoryForm
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.conditioning import Namings
@@ -156,3 +157,12 @@ def test_laboratories_whose_pairs_are_as_the_model_says_keep_them(icons: IconSet
     chance = np.full((10, 24, 2, 2), 0.5)
     played = Confusions(("a", "b"), chance, np.ones((10, 24, 2)))
     assert np.array_equal(played.with_scores(np.ones((10, 2, 2))).probability, chance)
+
+
+def test_pairs_that_are_taken_out_leave_the_people_as_they_were() -> None:
+    chance = np.random.default_rng(2).dirichlet(np.ones(3), size=(5, 4, 3))
+    played = Confusions(("a", "b", "c"), chance, np.ones((5, 4, 3)), np.linspace(0.3, 3.0, 5))
+    scores = pair_scores(3, 5, 8)
+    apart = played.with_scores(scores)
+    assert not np.allclose(apart.probability, chance, atol=0.05)
+    assert apart.without_scores(scores).probability == pytest.approx(chance, abs=1e-12)
