@@ -72,7 +72,9 @@ class ObserverModel:
         return cls(file.name, hashlib.sha256(file.read_bytes()).hexdigest(), nominal, records, draws)
 
     def form_shares(self, memory: MemoryChoice) -> dict[MemoryForm, float]:
-        """The share of laboratories with each form of memory that counts: even, or that of a kept laboratory's draws.
+        """The share of laboratories with each form of memory that counts: even; of a kept one, the form it has itself.
+
+        Its other draws have constants of their own, with which theirs goes.
 
         >>> ObserverModel.load().form_shares("both")
         {'episodes': 0.5, 'naming': 0.5}
@@ -80,7 +82,7 @@ class ObserverModel:
         forms, held = forms_in(memory), None if self.posterior is None else self.posterior.forms
         if held is None or len(forms) == 1:
             return dict.fromkeys(forms, 1.0 / len(forms))
-        return {form: held.count(form) / len(held) for form in forms if form in held}
+        return {held[0]: 1.0}
 
     def most_draws(self, wanted: int) -> int:
         """As many draws as are wanted, or as many as there are."""
