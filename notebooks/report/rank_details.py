@@ -83,7 +83,12 @@ def crowd_text(ranking: Ranking | Sensitivity) -> str:
 def intervals_text(ranking: Ranking) -> str:
     """The sentence on what intervals for a laboratory hold; empty where there are none."""
     found = ranking.new_laboratory
-    return "" if found is None else f"Intervals of a laboratory: {', '.join(found.covers)}. "
+    if found is None:
+        return ""
+    # The least and the greatest of n hold a further one in (n - 1) / (n + 1) of cases.
+    held = (found.draws - 1) / (found.draws + 1)
+    few = "" if held >= 0.95 else f"{found.draws} draws are too few for 95 %: they hold at most {int(100.0 * held)} %. "
+    return f"Intervals of a laboratory: {', '.join(found.covers)}. {few}"
 
 
 def caveat(ranking: Ranking) -> str:

@@ -63,6 +63,13 @@ def test_the_json_has_the_promised_keys_and_the_details_its_numbers(cli: Cli, tw
     assert max(len(line) for line in said.stdout.splitlines() if not line.startswith("Next: ")) <= 80
 
 
+def test_draws_too_few_for_an_interval_say_what_they_hold(cli: Cli) -> None:
+    few, enough = (
+        " ".join(cli.good("rank", "wave-confusions", "--people", 4, "--intervals", n).stdout.split()) for n in (38, 39)
+    )
+    assert "38 draws are too few for 95 %: they hold at most 94 %." in few and "too few" not in enough
+
+
 def test_what_is_asked_first_stands_in_a_few_lines(process: Cli) -> None:
     said = process("rank", "wave-confusions", "--people", 4, "--intervals", 0).stdout.splitlines()
     assert len(said) <= 21
