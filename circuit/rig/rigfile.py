@@ -12,6 +12,7 @@ from thermicon.base.words.near_words import did_you_mean, proposals
 
 from . import faults as kinds
 from .faults import PARAMETERS, KeyTable, sentence, unit_of
+from .usual import likely_unit
 from .module import Datasheet
 from .rules import faults_of
 from .uncertainty import Uncertainty
@@ -252,7 +253,7 @@ def read_table(document: Mapping[str, Any], where: str) -> RigTable:
     try:
         return RigTable.model_validate(dict(document))
     except ValidationError as problem:
-        faults = key_faults(problem, _nearest, unit_of)
+        faults = key_faults(problem, _nearest, unit_of, likely_unit=likely_unit)
         raise RigError("\n".join(f"{where}: {fault}" for fault in faults)) from None
 
 
