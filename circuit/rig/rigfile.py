@@ -12,10 +12,10 @@ from thermicon.base.words.near_words import did_you_mean, proposals
 
 from . import faults as kinds
 from .faults import PARAMETERS, KeyTable, sentence, unit_of
-from .usual import likely_unit
 from .module import Datasheet
 from .rules import faults_of
 from .uncertainty import Uncertainty
+from .usual import likely_unit
 
 
 class RigError(InputError):
