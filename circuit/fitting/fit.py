@@ -108,7 +108,7 @@ def fit(
     check_sensors(problem)
     solution = solve(problem)
     moving = [noticed.facts["run"] for noticed in unsteady(problem, solution.theta)]
-    runs = tuple(started(rig, run, contradicted=run.name in moving) for run in problem.runs)
+    runs = tuple(started(rig, run, offset_K, contradicted=run.name in moving) for run in problem.runs)
     if any(run.start_C != before.start_C for run, before in zip(runs, problem.runs, strict=True)):
         problem = problem.again(problem.rig, keys, runs)
         solution = solve(problem)
@@ -171,5 +171,5 @@ def _result(
     return RigFit(
         fitted, parameters, correlation, channel_fits(problem, solution.theta), sources,
         (*notes, *map(str, (*disagreed, *remarked, *last))), solution.converged, misfit,
-        tuple(layer.name for layer in start.skin.layers) if layers else (),
+        tuple(layer.name for layer in start.skin.layers) if layers else (), problem.offset_sd_K,
     )  # fmt: skip
