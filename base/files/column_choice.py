@@ -81,7 +81,6 @@ def chosen(
 ) -> NamedHeader:  # fmt: skip
     """Our names of the columns: as they say, else the only clock is time, and the only column in °C or A is taken."""
     if TIME in names:
-        _name_by_words(header, rows)
         _add_milliseconds(header, rows)
         header[:] = [name if name in (*names, *theirs.values()) or not rows or _holds(rows, at) else ""
                      for at, name in enumerate(header)]  # fmt: skip
@@ -140,7 +139,7 @@ def _wristband(header: Sequence[str], rows: list[list[str]]) -> tuple[float, str
     return 1 / rate, f"{rate:g} rows a second"
 
 
-def _name_by_words(header: list[str], rows: Sequence[list[str]]) -> None:
+def name_by_words(header: list[str], rows: Sequence[list[str]]) -> None:
     """Name a column by the one word that stands before its number in every row: its unit, or the name it lacks."""
     for at in range(1, len(header)):
         if rows and len(rows[0]) > at and NUMBER.fullmatch(rows[0][at]) and not parted(header[at])[1]:

@@ -13,6 +13,7 @@ from .clock import DAY_S, HOUR_S, order_fault, seconds_of, spread
 from .column_choice import is_setting
 from .column_names import Unit, parted
 from .table import FEW, Table, as_number
+from .table_content import DECIMALS
 from .units import (
     ON_SKIN_C,
     POSSIBLE_C,
@@ -44,12 +45,16 @@ CLOCK_CURE = "write times as seconds from any start, or as 2026-03-02 23:59:58.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MeasuredTable:
-    """Times (rows,) in s that do not fall, columns (rows,) with NaN in gaps, the line of each row, and notes."""
+    """Times (rows,) in s that do not fall, columns (rows,) with NaN in gaps, the line of each row, and notes.
+
+    What is ``clocked`` has its times from a clock, whose unit is known.
+    """
 
     time_s: Array
     columns: dict[str, Array]
     lines: tuple[int, ...]
     notes: tuple[str, ...]
+    clocked: bool
 
 
 def missing(table: Table, name: str, what: str) -> InputError:
@@ -67,6 +72,12 @@ def missing(table: Table, name: str, what: str) -> InputError:
     for each, cells in several:
         said += f"; {' and '.join(cells[:FEW])} may be {each}"
     known = {each: cells[0] for each, cells in theirs.items() if cells and theirs[first]}
+    if DECIMALS in table.unnamed:
+        return table.fault("table", None, said, "whole numbers would be read without their decimals")
+    free = {parted(cell)[1] for cell in {*table.header} - {*table.names.renamed, TIME, "icon", ""}}
+    if not known and not any(unit is None or unit.ours == first.rpartition("_")[2] for unit in free):
+        cure = "no column is left that may be it: give a table that has it"
+        return table.fault("table", table.line or None, said, cure)
     return table.fault("table", table.line or None, said, "say which it is").to(columns=known or {first: "THEIRS"})
 
 
@@ -175,7 +186,7 @@ def measured(
     if not ours and not clocked and (like := like_units_of_time(time)):
         what = f"time_s goes in steps of {np.median(np.diff(time)):g} over {time[-1] - time[0]:g}, read as s"
         notes.append(f"{what}: these look like {like[0]}; if they are, {like[1]} to have s")
-    return MeasuredTable(time, columns, tuple(lines.tolist()), tuple(notes))
+    return MeasuredTable(time, columns, tuple(lines.tolist()), tuple(notes), clocked)
 
 
 def _times(table: Table, notes: list[str]) -> tuple[Array, bool]:

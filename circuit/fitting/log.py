@@ -75,14 +75,18 @@ class Log:
         *,
         sha256: str = "",
         notes: Sequence[str] = (),
+        clocked: bool = False,
     ) -> Log:
-        """A checked log of columns by name, `time_s` among them; raises LogError for what cannot be a log."""
+        """A checked log of columns by name, `time_s` among them; raises LogError for what cannot be a log.
+
+        What is `clocked` has its times from a clock, whose unit is known.
+        """
         values = {key: np.asarray(column, dtype=np.float64) for key, column in columns.items()}
         if "time_s" not in values:
             raise LogError(f"{name}: the column time_s (time in s) is missing; found {', '.join(values) or 'nothing'}")
         _check_lengths(name, values)
         time = values.pop("time_s")
-        _check_times(name, time)
+        _check_times(name, time, clocked)
         used = {key: column for key, column in values.items() if is_known(key)}
         empty = [key for key, column in used.items() if not np.isfinite(column).any()]
         used = {key: column for key, column in used.items() if key not in empty}
@@ -144,7 +148,7 @@ def _check_lengths(name: str, values: Mapping[str, Array]) -> None:
             raise LogError(f"{name}: unequal lengths: {what}; cut the longer column")
 
 
-def _check_times(name: str, time: Array) -> None:
+def _check_times(name: str, time: Array, clocked: bool) -> None:
     if not np.isfinite(time).all():
         row = int(np.argmin(np.isfinite(time)))
         raise LogError(f"{name}, row {row + 1}: time_s is empty; remove the row")
@@ -154,7 +158,7 @@ def _check_times(name: str, time: Array) -> None:
         raise LogError(f"{name}, row {row + 1}: {what}: {why}")
     length, step = float(time[-1] - time[0]), float(np.median(np.diff(time)))
     usual = SHORTEST_S <= step <= SLOWEST_S
-    like = like_units_of_time(time, whole=usual)
+    like = None if clocked else like_units_of_time(time, whole=usual)
     if like and (length > LONGEST_S or not usual):
         what = f"time_s goes in steps of {step:g} over {length:g}: these look like {like[0]}; {like[1]} to have s"
         raise LogError(f"{name}: {what}{'; of a run that is as long in s, keep an hour' if usual else ''}")
@@ -198,5 +202,6 @@ def read_log(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None 
     said = (*found.notes, *([f"columns that are not used: {unused}"] if unused else []))
     notes = [f"{where.name}: {note}" for note in said]
     digest = hashlib.sha256(data).hexdigest()
-    log = Log.of(where.name, {"time_s": found.time_s, **found.columns}, sha256=digest, notes=notes)
+    values = {"time_s": found.time_s, **found.columns}
+    log = Log.of(where.name, values, sha256=digest, notes=notes, clocked=found.clocked)
     return replace(log, lost={name: f"{where.name}: {said}" for name, said in table.lost.items()})

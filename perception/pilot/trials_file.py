@@ -117,7 +117,7 @@ def read_trials(
         if "responded" not in table.header and len(places.keys() & set(table.header)) > 1:
             if len(files) > 1:
                 raise TrialsError(f"{file}: a matrix of counts stands alone; give it without other files")
-            matrix = _matrix(file, table, places)
+            matrix = _matrix(file, table, places, meant)
             return replace(_counted(matrix[None], names, ("all",), file.name, digest), grouped=True)
         for line, (participant, block, number, *said) in _asked(file, table, len(files) > 1):
             where = f"{file}:{line}"
@@ -209,19 +209,22 @@ def _asked(path: Path, table: Table, each: bool) -> Iterator[tuple[int, list[str
             yield line, [own or row["participant"], row.get("block", ""), number, *pair]
 
 
-def _matrix(path: Path, table: Table, places: Mapping[str, int]) -> Array:
+def _matrix(path: Path, table: Table, places: Mapping[str, int], meant: _Cells) -> Array:
     """Counts (icons, icons + 2) of a matrix: rows are icons presented, columns answers, then not felt, and missing."""
     first, *names = (name for place, name in enumerate(table.header) if name or not place)
     none = [name for name in names if name not in places and name.casefold() in NOTHING]
     top = f"{path}:{table.line}"
     said = [
-        len(places) + (name.casefold() not in UNFELT) if name in none else places[_icon(name, "a column", places, top)]
+        len(places) + (name.casefold() not in UNFELT)
+        if name in none
+        else places[_icon(meant.icon(name), "a column", places, top)]
         for name in names
     ]
     counts: Array = np.zeros((len(places), len(places) + 2))
     for line, row in table.records((first, *names)):
         where = f"{path}:{line}"
-        shown, cells = places[_icon(row[first], "a row", places, where)], [row[name] or "0" for name in names]
+        shown = places[_icon(meant.icon(row[first]), "a row", places, where)]
+        cells = [row[name] or "0" for name in names]
         if counts[shown].any() or shown not in said:
             raise TrialsError(f"{where}: {row[first]} has two rows, or no column; an icon has one of each")
         numbers = [as_number(cell, table.mark) for cell in cells]
