@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..words.number_text import count_of
-from .clock import DAY_S, HOUR_S, order_fault, seconds_of, spread
+from .clock import DAY_S, HOUR_S, STARTED_AGAIN, order_fault, seconds_of, spread
 from .column_choice import is_setting
 from .column_names import Unit, parted
 from .table import FEW, Table, as_number
@@ -187,6 +188,21 @@ def measured(
         what = f"time_s goes in steps of {np.median(np.diff(time)):g} over {time[-1] - time[0]:g}, read as s"
         notes.append(f"{what}: these look like {like[0]}; if they are, {like[1]} to have s")
     return MeasuredTable(time, columns, tuple(lines.tolist()), tuple(notes), clocked)
+
+
+def recordings(table: Table) -> list[Table]:
+    """A table cut where its clock starts again; whole where it does not, or where rows are only sent again."""
+    import numpy as np
+
+    if TIME not in table.header:
+        return [table]
+    time, _ = _times(table, [])
+    fall = order_fault(time)
+    if not fall or fall[1] != STARTED_AGAIN or len(set(map(tuple, table.rows))) < len(table.rows):
+        return [table]
+    ends = [0, *(np.flatnonzero(np.diff(time) < 0) + 1).tolist(), len(time)]
+    return [replace(table, rows=table.rows[begin:end], lines=table.lines[begin:end])
+            for begin, end in itertools.pairwise(ends)]  # fmt: skip
 
 
 def _times(table: Table, notes: list[str]) -> tuple[Array, bool]:
