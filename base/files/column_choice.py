@@ -110,7 +110,29 @@ def chosen(
         if name and not there & set(wanted) and len(alike) == 1:
             guesses[name] = alike[0]
             notes.append(f"{alike[0]!r} is taken as {name}, as the only column in {'°C' if unit == 'C' else unit}")
-    return named(header, names, {**theirs, **guesses}) if guesses or TIME in header else ours
+    ours = named(header, names, {**theirs, **guesses}) if guesses or TIME in header else ours
+    return _without_idle(ours, header, rows, theirs)
+
+
+def _without_idle(
+    ours: NamedHeader, header: list[str], rows: Sequence[list[str]], theirs: Mapping[str, str]
+) -> NamedHeader:
+    """Doubt a reading of one value throughout that was taken by its name, where another in °C varies."""
+    for name in {*ours.renamed} & {*READINGS} - {*theirs}:
+        own = ours.header.index(name)
+        if _varies(rows, own) or {*ours.header} & {*READINGS} - {name}:
+            continue
+        others = [cell for at, cell in enumerate(ours.header) if is_reading(cell, "C", header) and _varies(rows, at)]
+        if others:
+            cells = [header[own] if cell == name else cell for cell in ours.header]
+            renamed = {each: said for each, said in ours.renamed.items() if each != name}
+            ours = NamedHeader(tuple(cells), renamed, {**ours.doubtful, name: (*others, header[own])})
+    return ours
+
+
+def _varies(rows: Sequence[list[str]], at: int) -> bool:
+    """Whether a column has two different cells."""
+    return any(at < len(row) and row[at] != rows[0][at] for row in rows if at < len(rows[0]))
 
 
 def _holds(rows: Sequence[list[str]], at: int) -> bool:
@@ -140,12 +162,16 @@ def _wristband(header: Sequence[str], rows: list[list[str]]) -> tuple[float, str
 
 
 def name_by_words(header: list[str], rows: Sequence[list[str]]) -> None:
-    """Name a column by the one word that stands before its number in every row: its unit, or the name it lacks."""
-    for at in range(1, len(header)):
-        if rows and len(rows[0]) > at and NUMBER.fullmatch(rows[0][at]) and not parted(header[at])[1]:
-            words = {row[at - 1] for row in rows if len(row) > at}
-            word = words.pop() if len(words) == 1 else ""
-            if unit_of(word):
-                header[at] += f" [{word}]"
-            elif header[at] == str(at + 1) and parted(word)[1]:
-                header[at] = word
+    """Name a column by the one word that stands beside its number in every row: its unit, or the name it lacks."""
+    full = [row for row in rows if len(row) >= len(header)]
+    for at in range(len(header) if full else 0):
+        words = {row[at] for row in full}
+        word = words.pop() if len(words) == 1 else ""
+        for number in (at + 1, at - 1) if word and not NUMBER.fullmatch(word) else ():
+            if 0 <= number < len(header) and VALUE.fullmatch(full[0][number]) and not parted(header[number])[1]:
+                if unit_of(word):
+                    header[number] += f" [{word}]"
+                    break
+                if header[number] == str(number + 1) and parted(word)[1]:
+                    header[number] = word
+                    break

@@ -41,6 +41,8 @@ MOST_ALIKE = 0.95
 """The part of a column's cells that must be such as one of ours has, to be proposed."""
 UNPADDED = re.compile(r"\d+[.,]\d{1,3}")
 """Seconds, a point, and the milliseconds as a whole number, as sketches print them."""
+COUNTER = re.compile(r"(?i)^(\d+|#|n[or]?\.?)$|frame|index|seq|sample|record|scan|row|step|entry|count|point")
+"""Names of columns that may number the rows."""
 CLOCK_CURE = "write times as seconds from any start, or as 2026-03-02 23:59:58.050"
 
 
@@ -118,8 +120,9 @@ def _may_be(name: str, table: Table, cell: str) -> bool:
     if len(sound) < MOST_ALIKE * len(values) or len(sound) < 2:
         return False
     rising = bool((np.diff(sound) > 0).mean() >= MOST_ALIKE)
+    counted = COUNTER.search(cell) and bool((np.diff(sound) == len(table.rows) // 400 + 1).all())
     if name == TIME or rising or not np.ptp(sound):
-        return name == TIME and rising
+        return name == TIME and rising and not counted  # numbers of rows are no times
     low, high = ON_SKIN_C if name.endswith("_C") else USUAL_A
     sound = sound - 273.15 * (name.endswith("_C") and np.median(sound) > 273.15)
     return bool(((sound >= low) & (sound <= high)).mean() >= MOST_ALIKE)

@@ -161,7 +161,7 @@ def _with_keys(said: str, text: str) -> tuple[str, str, Options] | None:
 
 def _scaled(text: str, door: str, options: Options, name: str, factor: tuple[float, float]) -> str:
     """A text whose column of one of our names is multiplied and added to."""
-    return _rewritten(text, door, options, name, lambda line, value: f"{value * factor[0] + factor[1]:.9g}")
+    return _rewritten(text, door, options, name, lambda line, value: f"{value * factor[0] + factor[1]:.15g}")
 
 
 def _changed(text: str, door: str, options: Options, at: int, name: str, new: str) -> str:

@@ -218,6 +218,24 @@ def test_a_row_of_each_person_may_call_its_columns_otherwise(tmp_path: Path, wor
         read_trials(written(tmp_path, "P1,dip,dip,dip", head=",".join(("participant", *first, second[0]))), ICONS)
 
 
+def test_columns_are_proposed_by_their_cells_and_not_by_their_names_alone(tmp_path: Path) -> None:
+    rows = (f"html,{k},{k // 2}-{k},P{k // 2},{'dip' if k else 'warm-step'},dip" for k in range(6))
+    path = written(tmp_path, *rows, head="trial_type,trial_index,node_id,subject,Q1,Q2_key")
+    theirs = {"participant": "subject", "trial": "trial_index", "presented": "Q1", "responded": "Q2_key"}
+    with pytest.raises(TrialsError, match="columns missing: participant, trial, presented, responded") as raised:
+        read_trials(path, ICONS)
+    assert raised.value.changes["columns"] == theirs
+    assert read_trials(path, ICONS, theirs).pooled[:, 2].tolist() == [0, 1, 5]
+
+
+@pytest.mark.parametrize(
+    ("corner", "turned"), [("presented", False), ("stimulus/response", False), ("response\\stimulus", True)]
+)
+def test_the_corner_of_a_matrix_says_whether_its_rows_are_answers(tmp_path: Path, corner: str, turned: bool) -> None:
+    found = read_trials(written(tmp_path, "dip,7,3", "cool-step,0,5", head=f"{corner},dip,cool-step"), ICONS[::2])
+    assert found.pooled.tolist() == ([[5, 3], [0, 7]] if turned else [[5, 0], [3, 7]])
+
+
 def test_icons_and_answers_may_stand_in_cells_of_json(tmp_path: Path) -> None:
     cell = '"{{""icon"": ""{}"", ""answer"": {{""name"": ""{}""}}}}"'
     rows = (f"P1,1,{cell.format('dip', 'dip')}", f"P1,2,{cell.format('warm-step', 'dip')}", "P1,3,{}")
