@@ -93,7 +93,6 @@ def chosen(
             if rows and all(is_clock(cell) for row in (rows[0], rows[-1]) for cell in row[at : at + 1])
         ]
         clocks = clocks or [at for at in free if (own := parted(header[at])[1]) and own.ours == "s"]
-        rate = rate or _wristband(header, rows)
         if len(clocks) == 1:
             guesses[TIME] = header[clocks[0]]
         elif not clocks and rate is not None:
@@ -148,17 +147,6 @@ def _add_milliseconds(header: list[str], rows: Sequence[list[str]]) -> None:
             for row in rows:
                 row[at] += f".{row[at + 1]:0>3}"
             header[at], header[at + 1] = "Time", ""
-
-
-def _wristband(header: Sequence[str], rows: list[list[str]]) -> tuple[float, str] | None:
-    """The rate of a wristband's file: no names, the seconds since 1970, the rows per second, then the readings."""
-    if header != ["1"] or len(rows) < 3 or any(not VALUE.fullmatch(row[0]) for row in rows[:2]):
-        return None
-    begin, rate = (float(row[0].replace(",", ".")) for row in rows[:2])
-    if not (1e9 < begin < 2e9 and 0 < rate <= 1000):
-        return None
-    del rows[:2]
-    return 1 / rate, f"{rate:g} rows a second"
 
 
 def name_by_words(header: list[str], rows: Sequence[list[str]]) -> None:

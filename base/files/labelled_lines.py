@@ -86,11 +86,6 @@ def flat(cell: str) -> dict[str, str]:
             pending = [*((f"{name}.{inner}", each) for inner, each in value.items()), *pending]
         else:
             flattened[str(name)] = "" if value is None else str(value)
-    units = {name: unit for name in flattened if name.endswith("Unit") and (unit := flattened[name])}
-    for name, unit in units.items():  # Tasmota writes "TempUnit": "C" beside them
-        stem = name.removesuffix("Unit")
-        flattened = {f"{each} [{unit}]" if stem and each.rpartition(".")[2].startswith(stem) and each != name else each:
-                     value for each, value in flattened.items()}  # fmt: skip
     return flattened
 
 

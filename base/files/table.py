@@ -171,8 +171,6 @@ def read_table(
         at = named_columns[0]
         stated = "" if parted(header[at])[1] else stated_unit(content.above)
         header[at] += f" [{stated}]" if stated else ""
-        if rows[0][at : at + 1] == [str(len(rows) - 1)]:  # the number of the rows stands above them
-            del rows[0], places[0]
     ours = chosen(header, rows, names, theirs, rate, notes)
     places = places[len(places) - len(rows) :]
     for name, (own, unit) in ours.renamed.items():

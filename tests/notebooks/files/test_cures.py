@@ -26,8 +26,8 @@ from tests.notebooks.readers import KINDS
 from tests.perception.pilot import test_tables
 
 COUNT, MOST_GB = int(os.environ.get("THERMICON_TABLES", "200")), 1.0
-UNREAD = {"ESPHome log", "Teleplot", "BIOPAC AcqKnowledge text"}
-"""Refused in words: a clock within a word, two numbers behind a label, a count above the rows."""
+UNREAD = {"ESPHome log", "Teleplot", "BIOPAC AcqKnowledge text", "Empatica E4 TEMP.csv"}
+"""Refused in words: a clock within a word, two numbers behind a label, a count or a rate above the rows."""
 TABLE_DOORS = ("fit", "convert", "compare", "simulate")
 
 
