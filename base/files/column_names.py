@@ -69,7 +69,9 @@ OTHERS = {
 
 LATEX = str.maketrans("", "", "$\\^~")
 BRACKET = re.compile(r"[\s_]*[(\[{<]([^)\]}>]*)[)\]}>]")
-BEHIND = re.compile(r"(.*?)(?:\s*[/,|]\s*|\s+in\s+|[\s_]+)([^\s_/,|()\[\]]+|deg(?:rees)?[ .]\w+)(?:\s*\(.*)?")
+BEHIND = re.compile(
+    r"(.*?)(?:\s*[/,|]\s*|\s+in\s+|[\s_]+|(?=[°º℃℉]))([^\s_/,|()\[\]]+|deg(?:rees)?[ .]\w+)(?:\s*\(.*)?"
+)
 SPICE = re.compile(r"([vi])\((.+)\)", re.IGNORECASE)
 LONGEST_NAME = 200
 HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
@@ -77,7 +79,7 @@ HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 def unit_of(text: str) -> Unit | None:
     """The unit that a text such as [Deg C] or ms is; None where it is none."""
-    plain = re.sub(r"\^?\\circ", "°", text).translate(LATEX).strip(" ()[]{}<>\"'").lower()
+    plain = re.sub(r"\^?\\circ", "°", text).translate(LATEX).strip(" ()[]{}<>\"'").lower().removeprefix("unix ")
     return UNITS.get(re.sub(r"[\s_]+", ".", plain)) if plain else None
 
 

@@ -259,6 +259,8 @@ def _in_words(
     if kind in NUMBERS:
         quotes = ", without quotes or unit" if isinstance(value, str) else ""
         return f"{subject}: must be a {NUMBERS[kind]}{behind and f' in{behind}'}{quotes}"
+    if kind == "string_type":
+        return f"{subject}: must be a text, in quotes"
     if kind == "bool_type":
         return f"{subject}: must be true or false"
     if kind == "literal_error":

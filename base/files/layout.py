@@ -27,7 +27,7 @@ VALUE = re.compile(
     r"|\d{1,4}([-/.])\d{1,2}\1\d{1,4}"
 )
 """A number, or a date."""
-WITH_UNIT = re.compile(r"([-+−]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\d\s].*)")
+WITH_UNIT = re.compile(r"([-+−]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\d\s(].*)")
 RULE = set("-=*+_")
 LONGEST_CLOCK = 40
 SAMPLE, LONGEST_LINE, LONGEST_CELL, LONGEST_FOOT = 300, 10_000, 60, 20
@@ -135,9 +135,9 @@ def _judged(
     named = [(*_names(cells, width, names, theirs, lines[above : above + 1], row, mark), at)
              for at, (above, cells) in enumerate(rows[:first])]  # fmt: skip
     known = [each for each in named if each[0] >= 0.9]
-    best = max(
-        known, key=lambda each: (each[0], -each[2]), default=max(named, key=lambda each: each[::2], default=None)
-    )
+    last = 1 if "time_s" in names else -1  # right above the rows; where rows are words, the first line
+    likely = max(named, key=lambda each: (each[0], last * each[2]), default=None)
+    best = max(known, key=lambda each: (each[0], -each[2]), default=likely)
     if best is None or best[0] <= 0:
         best = None
     if width and best is not None and mark == " " and len(best[1]) not in (width, width - 1):
@@ -192,9 +192,9 @@ def _names(
         plain = plain[1:]
     again = 0.0
     if width and len(plain) not in (width, width - 1):
-        ways = (next(cells_of(iter([line[0].lstrip("#%; ")]), mark), (0, plain))[1] for mark in MARKS if line)
+        ways = (next(cells_of(iter([line[0].lstrip("#%; ")]), mark), (0, plain))[1] for mark in ("  ", *MARKS) if line)
         other = next((way for way in ways if len(way) == width > 1), None)
-        plain, again = ([cell.strip(",;") for cell in other], 0.2) if other else (plain, 0.0)
+        plain, again = ([" ".join(cell.strip(",;").split()) for cell in other], 0.2) if other else (plain, 0.0)
     while width and len(plain) > width and not plain[-1]:
         plain = plain[:-1]
     pairs = list(itertools.zip_longest(plain, row[: len(plain)], fillvalue=""))

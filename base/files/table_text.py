@@ -73,8 +73,6 @@ def table_text(data: bytes, fault: Fault, example: str) -> tuple[str, str]:
     text = text.replace("\r\n", "\n").replace("\r", "\n").replace("Â°", "°").replace("Âµ", "µ")
     if FULL_WIDTH.search(text[:HEAD]):
         text = unicodedata.normalize("NFKC", text)
-    if re.search(r"(?m)^Index +time ", text[:10_000]):  # pages of ngspice's print
-        text = "\n".join(line if re.match(r"Index|\d", line) else "" for line in text.split("\n"))
     return text, rare
 
 
