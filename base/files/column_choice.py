@@ -23,7 +23,7 @@ ELSEWHERE = re.compile(
 RATE = re.compile(
     r"(?i)(?:sampl\w*[ _]?(?:rate|interval|period|freq\w*)|interval|increment)[\W_]{0,9}"
     r"([\d.]+)\s?(k?hz|[mµu]?s(?:ec)?)\b"
-    r"|([\d.]+)\s?(m?s(?:ec)?)/sample"
+    r"|([\d.]+)\s?(m?s(?:ec)?)/sample|\bdelta_x\t([\d.e+-]+)"
 )
 
 
@@ -56,7 +56,7 @@ def stated_rate(text: str) -> tuple[float, str] | None:
     """
     if not (found := RATE.search(text)):
         return None
-    number, unit = float(found[1] or found[3]), (found[2] or found[4]).lower()
+    number, unit = float(found[1] or found[3] or found[5]), (found[2] or found[4] or "s").lower()
     if number <= 0:
         return None
     if unit.endswith("hz"):
@@ -155,7 +155,8 @@ def name_by_words(header: list[str], rows: Sequence[list[str]]) -> None:
     for at in range(len(header) if full else 0):
         words = {row[at] for row in full}
         word = words.pop() if len(words) == 1 else ""
-        for number in (at + 1, at - 1) if word and not NUMBER.fullmatch(word) else ():
+        beside = (at - 1, at + 1) if header[at] != str(at + 1) else (at + 1, at - 1)  # "Reading, Unit"; "T: 32.1"
+        for number in beside if word and not NUMBER.fullmatch(word) else ():
             if 0 <= number < len(header) and VALUE.fullmatch(full[0][number]) and not parted(header[number])[1]:
                 if unit_of(word):
                     header[number] += f" [{word}]"

@@ -134,7 +134,8 @@ class NamedHeader:
 def named(cells: Sequence[str], names: Iterable[str], theirs: Mapping[str, str]) -> NamedHeader:
     """Read a header: ours, what ``theirs`` gives, what means one of ours; of two that may, the one with a unit."""
     renamed, doubtful = dict[str, tuple[str, Unit]](), dict[str, tuple[str, ...]]()
-    places = {name: [(cells.index(own), parted(own)[1])] for name, own in theirs.items() if own in cells}
+    places = {name: [(cells.index(own), parted(own)[1] or (unit_of(own) if len(own) > 1 else None))]
+              for name, own in theirs.items() if own in cells}  # fmt: skip
     new, said = [f"({cell})" if cell in places else cell for cell in cells], set(places)
     for at, cell in enumerate(cells):
         if cell not in names and cell not in theirs.values() and not re.fullmatch("probe_.+_C", cell):

@@ -23,7 +23,7 @@ CLOCK = re.compile(
     r"(?:Z| ?[+-]\d\d:?\d\d)?[\])]?"
 )
 VALUE = re.compile(
-    r"[-+−]?(?:\d+(?:[.,]\d*)?|[.,]\d+|\d{1,3}(?:[.,'’ ]\d{3})+(?:[.,]\d+)?)(?:[eE][-+]?\d+)?"
+    r"(?:[-+−] *)?(?:\d+(?:[.,]\d*)?|[.,]\d+|\d{1,3}(?:[.,'’ ]\d{3})+(?:[.,]\d+)?)(?:[eE][-+]?\d+)?"
     r"|\d{1,4}([-/.])\d{1,2}\1\d{1,4}"
 )
 """A number, or a date."""
@@ -72,6 +72,11 @@ def is_clock(cell: str) -> bool:
     (True, True, False)
     """
     return ":" in cell and len(cell) <= LONGEST_CLOCK and CLOCK.fullmatch(cell) is not None
+
+
+def is_told(cells: Sequence[str]) -> bool:
+    """Whether a line says something of the table, as comments and LabChart's ``TopValue=`` do, and is no row of it."""
+    return cells[0].startswith(COMMENTS) or cells[0].endswith("=")
 
 
 def is_rule(cells: Sequence[str]) -> bool:
@@ -126,7 +131,7 @@ def _judged(
     alike = [share > 0 and len(cells) <= width and not _is_stamped(cells) and words.isdisjoint(cells)
              for (_, cells), share in zip(rows, shares, strict=True)]  # fmt: skip
     exact = [good and len(cells) == width for good, (_, cells) in zip(alike, rows, strict=True)]
-    told = [at for at, (_, cells) in enumerate(rows) if not (cells[0].startswith(COMMENTS) or is_rule(cells))]
+    told = [at for at, (_, cells) in enumerate(rows) if not (is_told(cells) or is_rule(cells))]
     pairs = itertools.zip_longest(told, told[1:])
     first = next((at for at, after in pairs if exact[at] and (after is None or alike[after])), len(rows))
     while first and shares[first - 1] == 1 and 1 < len(rows[first - 1][1]) < width:  # rows that end early
@@ -166,7 +171,7 @@ def _is_stamped(cells: Sequence[str]) -> bool:
 
 def _share(cells: Sequence[str]) -> float:
     """The part of the cells that are numbers, of those that hold anything; 0 for a comment."""
-    if cells[0].startswith(COMMENTS):
+    if is_told(cells):
         return 0.0
     there = [cell for cell in cells if cell and cell.lower() not in NOTHINGS]
     return sum(map(is_number, there)) / len(there) if there else 0.0
@@ -228,7 +233,7 @@ def rows_of(layout: Layout, text: str) -> Iterator[tuple[int, list[str], bool]]:
             and layout.key
         ):
             yield place, cells, True
-        elif not (cells[0].startswith(COMMENTS) or is_rule(cells)):
+        elif not (is_told(cells) or is_rule(cells)):
             there = [cells[key] for key in layout.key if key < len(cells)]
             said = [cell for cell in there if cell and cell.lower() not in NOTHINGS]
             whole = not layout.key or any(map(is_number, said)) or (not said and len(cells) > 1)

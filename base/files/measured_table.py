@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,7 @@ from ..words.number_text import count_of
 from .clock import DAY_S, HOUR_S, STARTED_AGAIN, order_fault, seconds_of, spread
 from .column_choice import is_setting
 from .column_names import Unit, parted
+from .layout import is_number
 from .table import FEW, Table, as_number
 from .table_content import DECIMALS
 from .units import (
@@ -147,6 +148,9 @@ def measured(
     for name, (_, unit) in table.names.renamed.items():
         if name in columns:
             columns[name] = columns[name] * unit.factor + unit.plus
+    if sources := _interleaved(table, columns):
+        what = f"rows of {' and '.join(map(repr, sources[:FEW]))} follow one another in one column"
+        raise table.fault("table", None, what, "keep the rows of one of them, or give each a column of its own")
     if (few := len(time)) < 2:
         what = f"{few or 'no'} row{'s' * (not few)} below the names of the columns"
         raise table.fault("table", None, what, "at least two are needed, a start and an end")
@@ -191,6 +195,24 @@ def measured(
         what = f"time_s goes in steps of {np.median(np.diff(time)):g} over {time[-1] - time[0]:g}, read as s"
         notes.append(f"{what}: these look like {like[0]}; if they are, {like[1]} to have s")
     return MeasuredTable(time, columns, tuple(lines.tolist()), tuple(notes), clocked)
+
+
+def _interleaved(table: Table, columns: Mapping[str, Array]) -> list[str]:
+    """Words beside the rows of several sources, each of which varies less by itself than they do together."""
+    import numpy as np
+
+    for name in table.header:
+        if name in (*columns, TIME, "") or table.header.count(name) > 1:
+            continue
+        words = np.array(list(table.texts(name)))
+        sources, which = np.unique(words, return_inverse=True)
+        if 2 <= len(sources) <= FEW and not any(map(is_number, sources)) and (words[1:] != words[:-1]).mean() > 0.3:
+            own = [np.flatnonzero(which == k) for k in range(len(sources))]
+            for values in columns.values():
+                apart = sum(float(np.nansum(np.abs(np.diff(values[rows])))) for rows in own)
+                if apart < 0.5 * float(np.nansum(np.abs(np.diff(values)))):
+                    return [str(source) for source in sources]
+    return []
 
 
 def recordings(table: Table) -> list[Table]:

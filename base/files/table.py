@@ -34,6 +34,8 @@ LARGEST = 1e38
 QUOTED_DECIMAL = re.compile(r'"[-−]?(\d+,\d{1,2}|0,\d+|\d+,\d{4,})"')
 """Shows that decimals have commas, where commas also separate the cells; 1,234 may be a thousand."""
 GROUPED = re.compile(r"[-+−]?\d{1,3}(?:([., ' ])\d{3})+(?:[.,]\d+)?")
+SIGNED = re.compile(r"^([-+−]) +(?=\d)")
+"""A sign with blanks behind it, as Graphtec's loggers write."""
 DATED = re.compile(r"(\d{1,2})[. -]{1,2}([A-Za-zäé]{3})[a-zäé.]*")
 MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
 GERMAN = str.maketrans({"ä": "a", "i": "y", "k": "c", "z": "c"})
@@ -127,7 +129,7 @@ class Table:
 
 def as_number(cell: str, mark: str = ",") -> float:
     """Return the number in a cell, NaN where there is none; a decimal comma counts where ``mark`` is another."""
-    cell = cell.replace("'", "").replace("’", "")
+    cell = SIGNED.sub(r"\1", cell.replace("'", "").replace("’", ""))
     plain = cell.replace(",", ".") if mark != "," and cell.count(",") == 1 and "." not in cell else cell
     try:
         return math.nan if "_" in plain else float(plain.replace("−", "-"))

@@ -47,7 +47,7 @@ ELSEWHERE = (
     "|put (?:semicolons|names)|own file|sort them|line is|keep (?:every|an hour)|split the|no column is left|are needed"
     "|add the (?:times|column)|give (?:the|size_K|one row)|name the blocks|number the trials|one of each|stands alone"
     "|at most 100|needs at least|log faster|whole number|units? of the times|connect it|without their decimals"
-    "|no names are left|THEIRS|ICON"
+    "|no names are left|name another column|THEIRS|ICON"
 )
 """Cures for which a person needs another program, another file, or to know what the sentence cannot."""
 SCALES = {
@@ -90,6 +90,8 @@ def obeyed(error: Exception, door: str, text: str, options: Options) -> tuple[st
         return door, text, {**options, "columns": {**options.get("columns", {}), **ast.literal_eval(found[1])}}
     if found := re.search(r"\(column='(.*)'\)", said):
         return door, text, {**options, "column": found[1]}
+    if found := re.search(r"rows of '(.+?)' and .* follow one another", said):
+        return door, "\n".join([lines[0], *(line for line in lines if f",{found[1]}," in line)]), options
     if found := re.search(r"call their column (time \(\w+\))", said):
         return door, re.sub(r"(?i)\btime\b *\(?\w*\)?", found[1], text, count=1), options
     factor = next((SCALES[words] for words in SCALES if words in said), None)
