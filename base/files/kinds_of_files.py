@@ -7,6 +7,7 @@ KINDS = {
     "study file": (r"\[(stimuli|participants|trials)\]", "thermicon study takes it"),
     "device file": (r"driven_by\s*=", "give it as the device"),
     "rig file": (r"(base\s*=|\[\[?(skin|contact|heat_sink|module|thermode)\b)", "give it as the rig"),
+    "log of E-Prime": (r"\*\*\* LogFrame Start", "export a table from E-DataAid"),
     "table of records": (r"\A(#.*\n|\s)*\[\[record\]\]", "give it as the observer"),
 }
 """How a line of each kind begins, which no kind before it has, and where it belongs."""

@@ -31,6 +31,8 @@ ALIKE = 0.55
 """A cell that is so much alike an icon is a slip of the pen, not an instruction."""
 UNFELT = ("", "none", "no answer", "no response", "no_response", "not felt", "timeout", "null", "–", "-", "--", "---")
 """What experiments write where nothing was answered: the play was not felt."""
+SILENT = "none"
+"""What a cell that says in other words that nothing was felt may be said to stand for."""
 NOTHING = (*UNFELT, "missing", *NOTHINGS)
 """The same, and what stands for trials that are lost: these are none."""
 WIDE = re.compile(
@@ -77,7 +79,8 @@ def read_trials(
     icons
         The set, its name or file, or the names of its icons.
     columns
-        What the file calls ours, such as ``{"responded": "answer"}``, and its icons, such as ``{"dip": "num_2"}``.
+        What the file calls ours, such as ``{"responded": "answer"}``, its icons, such as ``{"dip": "num_2"}``, and what
+        was not felt, such as ``{"none": "nothing felt"}``.
 
     Returns
     -------
@@ -104,8 +107,14 @@ def read_trials(
         raise TrialsError("no file of answers is given; give at least one")
     names = tuple(each if isinstance(each, str) else each.name for each in given)
     places = {name: place for place, name in enumerate(names)}
-    theirs = {name: cell for name, cell in (columns or {}).items() if name not in places}
-    meant = _Cells(places, {cell: name for name, cell in (columns or {}).items() if name in places})
+    cells_meant = {*places, SILENT}
+    theirs = {name: cell for name, cell in (columns or {}).items() if name not in cells_meant}
+    for name in theirs.keys() - {*COLUMNS, "block"}:
+        raise TrialsError(
+            f"{name} is neither a column of answers nor an icon of the set; "
+            f"{did_you_mean(name, (*COLUMNS, 'block', *cells_meant))}"
+        )
+    meant = _Cells(places, {cell: name for name, cell in (columns or {}).items() if name in cells_meant})
     runs: dict[str, list[dict[tuple[str, str], tuple[int, int]]]] = {}
     lines: dict[tuple[str, tuple[str, str]], int] = {}
     passed, strange, digests, owner = 0, ("", ""), list[str](), dict[str, Path]()
@@ -132,6 +141,13 @@ def read_trials(
             person, trial = label(participant, "participant", where), label(number, "trial", where)
             person = person if owner.setdefault(person, file) == file else file.stem
             key, own = (block, trial), runs.setdefault(person, [{}])
+            shown = places[_icon(icon, "presented", places, where)]
+            answered = places[_icon(answer, "responded", places, where)] if answer else silent
+            if own[-1] and key == next(reversed(own[-1])):
+                before, first_answer = own[-1][key]
+                if before == shown and max(first_answer, answered) >= len(names):  # two screens of one trial
+                    own[-1][key], passed = (shown, min(first_answer, answered)), passed + 1
+                    continue
             if key in own[-1]:
                 if len(own[-1]) == 1 or key != next(iter(own[-1])):
                     raise TrialsError(
@@ -139,8 +155,7 @@ def read_trials(
                         f"{lines[person, key]}; number the trials on, add a column block, or remove the copy"
                     )
                 own.append({})  # the numbers start anew, as they do with each block
-            lines[person, key], shown = line, places[_icon(icon, "presented", places, where)]
-            own[-1][key] = shown, places[_icon(answer, "responded", places, where)] if answer else silent
+            lines[person, key], own[-1][key] = line, (shown, answered)
     file = files[0]
     digest = digests[0] if len(files) == 1 else hashlib.sha256("".join(digests).encode()).hexdigest()[:16]
     check_labels(file, runs)
@@ -323,7 +338,10 @@ def _icon(cell: str, column: str, known: Mapping[str, int], where: str) -> str:
     name = label(cell, column, where)
     if name in known:
         return name
-    where_to = {"responded": "; where nobody answered, leave the cell empty", "a column": "; leave out totals"}
+    where_to = {
+        "responded": f"; where nothing was felt, leave the cell empty, or put {SILENT} for ICON",
+        "a column": "; leave out totals",
+    }
     hint = f"{did_you_mean(name, known)}{where_to.get(column, '')}; or say which it stands for"
     raise TrialsError(f"{where}: {column} is {quoted(name)}, which is not an icon of the set; {hint}").to(
         columns={next(iter(nearest_words(name, known)), "ICON"): name}

@@ -228,6 +228,35 @@ def test_columns_are_proposed_by_their_cells_and_not_by_their_names_alone(tmp_pa
     assert read_trials(path, ICONS, theirs).pooled[:, 2].tolist() == [0, 1, 5]
 
 
+def test_the_screens_of_a_trial_are_one_trial(tmp_path: Path) -> None:
+    rows = ["P1,1,dip,", "P1,1,dip,dip", "P1,2,dip,cool-step", "P1,2,dip,", "P1,3,dip,", "P1,3,dip,", "P1,4,dip,"]
+    found = read_trials(written(tmp_path, *rows), ICONS)
+    assert (found.total, found.passed, found.unanswered.sum()) == (4, 3, 2)
+    with pytest.raises(TrialsError, match="trial '1' twice"):
+        read_trials(written(tmp_path, "P1,9,dip,dip", *rows[:2], "P1,1,cool-step,"), ICONS)
+
+
+def test_another_word_for_what_was_not_felt_can_be_said_and_a_name_that_is_none_of_ours_is_refused(
+    tmp_path: Path,
+) -> None:
+    path = written(tmp_path, "P1,1,dip,dip", "P1,2,dip,nichts")
+    with pytest.raises(TrialsError, match="leave the cell empty, or put none for ICON"):
+        read_trials(path, ICONS)
+    assert read_trials(path, ICONS, {"none": "nichts"}).unanswered.sum() == 1
+    with pytest.raises(
+        TrialsError, match="dipp is neither a column of answers nor an icon of the set; did you mean dip"
+    ):
+        read_trials(path, ICONS, {"dipp": "nichts"})
+
+
+@pytest.mark.parametrize("coding", ["utf-8", "utf-16"])
+def test_the_log_of_e_prime_is_told_what_to_export(tmp_path: Path, coding: str) -> None:
+    path = tmp_path / "e.txt"
+    path.write_text("*** Header Start ***\nSubject: 1\n\t*** LogFrame Start ***\n\tIcon: dip\n", encoding=coding)
+    with pytest.raises(TrialsError, match="this is a log of E-Prime, not a table; export a table from E-DataAid"):
+        read_trials(path, ICONS)
+
+
 @pytest.mark.parametrize(
     ("corner", "turned"), [("presented", False), ("stimulus/response", False), ("response\\stimulus", True)]
 )
