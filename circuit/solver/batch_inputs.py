@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -15,20 +15,7 @@ from thermicon.base.numbers.cores import cores
 
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from .network import DEEP_C, RECORDED, SKIN, Network, network_of
-
-
-class ModalRigs(NamedTuple):
-    """r rigs for the kernels: lumps `count` (r,), skins of m modes as in `SkinsOfBank`, `plates` as in `Network`."""
-
-    count: Index
-    rate_per_s: Array
-    touch: Array
-    to_modes: Array
-    from_modes: Array
-    first_W_per_K: Array
-    plates: Array
-
+from .network import DEEP_C, RECORDED, SKIN, ModalRigs, Network, network_of
 
 VECTOR = 16
 """Modes are padded to a multiple of this with modes that do nothing, since loops over whole vectors are quicker."""
