@@ -187,8 +187,8 @@ def run_on(
 
     readings = np.ascontiguousarray(bank.recorded[:, [RECORDED.index(probe) for probe in probes]])
     if extra is not None:
-        rigs = len(readings)
-        own = bank.readings(*(np.repeat(each[np.newaxis], rigs, axis=0) for each in extra))
+        start, weight = extra
+        own = bank.readings(np.tile(start, (len(readings), 1)), np.tile(weight, (len(readings), 1, 1)))
         readings = np.concatenate([readings, own], axis=1)
     out = np.empty((readings.shape[1], len(rig_of), int(intervals.row_of.max()) + 1))
     final, rigs_of_bank = np.zeros_like(state.nodes_C), bank.modal

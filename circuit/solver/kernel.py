@@ -40,7 +40,7 @@ next, and C/(δ/2) of both plates in W/K."""
 @compiled
 def begin(lane, r, rigs, state, p, modes):
     """Load the modes of a lane's skin from its state (nodes,) in °C; returns hot and cold plate and sink in °C."""
-    count, to_modes = rigs.count[r], rigs.to_modes
+    count, to_modes = rigs.lumps[r], rigs.to_modes
     for i in range(modes.size):
         total = 0.0
         for j in range(count):
@@ -53,7 +53,7 @@ def begin(lane, r, rigs, state, p, modes):
 @compiled
 def finish(lane, r, rigs, hot, cold, sink, modes, p, final):
     """Fill a lane's row of `final` (lane, nodes) in °C."""
-    count, from_modes = rigs.count[r], rigs.from_modes
+    count, from_modes = rigs.lumps[r], rigs.from_modes
     final[lane, net.HOT], final[lane, net.COLD] = hot, cold
     for j in range(count):
         total = 0.0

@@ -105,9 +105,9 @@ class Network:
 
 
 class ModalRigs(NamedTuple):
-    """r rigs for the kernels: lumps `count` (r,), skins of m modes as in `SkinsOfBank`, and `plates`."""
+    """r rigs for the kernels: how many `lumps` (r,), skins of m modes as in `SkinsOfBank`, and `plates`."""
 
-    count: Index
+    lumps: Index
     rate_per_s: Array
     touch: Array
     to_modes: Array
