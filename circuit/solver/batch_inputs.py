@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from thermicon.base.numbers.arrays import Array, Index
-from thermicon.base.numbers.cores import cores
+from thermicon.base.numbers.cores import cores, quiet_blas
 
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
@@ -44,7 +44,8 @@ class SkinsOfBank:
         matrix[:, lumps, lumps] = self.conductance[:, :-1] + self.conductance[:, 1:] + self.perfusion
         above, below = lumps[:-1], lumps[1:]
         matrix[:, above, below] = matrix[:, below, above] = np.where(real[:, 1:], -self.conductance[:, 1:-1], 0.0)
-        rates, vectors = np.linalg.eigh(matrix / (root[:, :, np.newaxis] * root[:, np.newaxis, :]))
+        with quiet_blas():
+            rates, vectors = np.linalg.eigh(matrix / (root[:, :, np.newaxis] * root[:, np.newaxis, :]))
         vectors *= real[:, :, np.newaxis]
         spare = -most % VECTOR
         rates = np.pad(rates, ((0, 0), (0, spare)))
