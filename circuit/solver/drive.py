@@ -64,7 +64,7 @@ class Drive:
     current_A: Array
     held: bool = False
 
-    def __init__(self, time_s: Sequence[float] | Array, current_A: Sequence[float] | Array, held: bool = False) -> None:
+    def __init__(self, time_s: Array | Sequence[float], current_A: Array | Sequence[float], held: bool = False) -> None:
         times, currents = np.array(time_s, dtype=np.float64), np.array(current_A, dtype=np.float64)
         for array in (times, currents):
             array.setflags(write=False)

@@ -1,6 +1,7 @@
 """Steady states of the circuit."""
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -42,6 +43,7 @@ def _column(network: Network) -> tuple[Array, Array]:
     return z, e
 
 
+@lru_cache(maxsize=256)
 def state_under_current(network: Network, current_A: float, in_the_end: bool = False) -> Array:
     """Steady state (nodes,) in °C, read-only, under a current; ArithmeticError where it would heat without limit."""
     alpha, ohm, leak, sink, out = _plates(network, in_the_end)
