@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from thermicon.base.numbers.arrays import Array, Index
-from thermicon.base.numbers.cores import cores, quiet_blas
+from thermicon.base.numbers.cores import cores
 
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
@@ -37,20 +37,21 @@ class SkinsOfBank:
         Lumps are in K above the deep node. With C the capacities and K the conductances, C^(−1/2)·K·C^(−1/2) is
         symmetric. Its modes do not depend on the current, and what is padded has none of the weight.
         """
-        most, root = self.capacity.shape[1], np.sqrt(self.capacity)
-        lumps = np.arange(most)
-        real = lumps < self.count[:, np.newaxis]
-        matrix = np.zeros((len(root), most, most))
-        matrix[:, lumps, lumps] = self.conductance[:, :-1] + self.conductance[:, 1:] + self.perfusion
-        above, below = lumps[:-1], lumps[1:]
-        matrix[:, above, below] = matrix[:, below, above] = np.where(real[:, 1:], -self.conductance[:, 1:-1], 0.0)
-        with quiet_blas():
-            rates, vectors = np.linalg.eigh(matrix / (root[:, :, np.newaxis] * root[:, np.newaxis, :]))
-        vectors *= real[:, :, np.newaxis]
-        spare = -most % VECTOR
-        rates = np.pad(rates, ((0, 0), (0, spare)))
-        from_modes = np.pad(vectors / root[:, :, np.newaxis], ((0, 0), (0, 0), (0, spare)))
-        to_modes = np.pad(np.swapaxes(vectors * root[:, :, np.newaxis], 1, 2), ((0, 0), (0, spare), (0, 0)))
+        from scipy.linalg import eigh_tridiagonal
+
+        rigs, most = self.capacity.shape
+        width = most + -most % VECTOR
+        rates, to_modes, from_modes = (
+            np.zeros((rigs, width)),
+            np.zeros((rigs, width, most)),
+            np.zeros((rigs, most, width)),
+        )
+        for rig, n in enumerate(self.count):
+            g, root = self.conductance[rig, : n + 1], np.sqrt(self.capacity[rig, :n])
+            diagonal = (g[:-1] + g[1:] + self.perfusion[rig, :n]) / self.capacity[rig, :n]
+            between = -g[1:-1] / (root[1:] * root[:-1])
+            rates[rig, :n], vectors = eigh_tridiagonal(diagonal, between, check_finite=False)
+            to_modes[rig, :n, :n], from_modes[rig, :n, :n] = vectors.T * root, vectors / root[:, np.newaxis]
         return rates, from_modes[:, 0].copy(), to_modes, from_modes
 
 
