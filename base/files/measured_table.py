@@ -206,7 +206,8 @@ def _interleaved(table: Table, columns: Mapping[str, Array]) -> list[str]:
             continue
         words = np.array(list(table.texts(name)))
         sources, which = np.unique(words, return_inverse=True)
-        if 2 <= len(sources) <= FEW and not any(map(is_number, sources)) and (words[1:] != words[:-1]).mean() > 0.3:
+        mixed = 2 <= len(sources) <= min(FEW, len(words) // 4) and (words[1:] != words[:-1]).mean() > 0.3
+        if mixed and not any(map(is_number, sources)):
             own = [np.flatnonzero(which == k) for k in range(len(sources))]
             for values in columns.values():
                 apart = sum(float(np.nansum(np.abs(np.diff(values[rows])))) for rows in own)
