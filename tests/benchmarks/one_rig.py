@@ -1,6 +1,6 @@
 """A rig that is used again, as in a notebook: ``python tests/benchmarks/saved_by_caches.py tests/benchmarks/one_rig.py``.
 
-Single commands take each rig once; here every icon of a set is simulated, and its current played, two hundred times.
+Single commands take each rig once; here every icon of a set is simulated, and its current played, 200 times.
 """
 
 from thermicon.circuit import Drive, Rig, simulate, simulate_current
