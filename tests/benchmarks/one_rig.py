@@ -1,4 +1,4 @@
-"""A rig that is used again, as in a notebook: ``python tests/benchmarks/saved_by_caches.py tests/benchmarks/one_rig.py``.
+"""A rig that is used again, as in a notebook, for ``saved_by_caches.py``, which takes this file as a command.
 
 Single commands take each rig once; here every icon of a set is simulated, and its current played, 200 times.
 """
