@@ -1,6 +1,6 @@
-"""A rig that is used again, as in a notebook; `saved_by_caches.py` beside it takes this file as its argument.
+"""A rig that is used again, as in a notebook, for ``saved_by_caches.py``, which takes this file as a command.
 
-Single commands take each rig once; here every icon of a set is simulated, and its current played, two hundred times.
+Single commands take each rig once; here every icon of a set is simulated, and its current played, 200 times.
 """
 
 from thermicon.circuit import Drive, Rig, simulate, simulate_current
