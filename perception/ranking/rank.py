@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import Unpack
 
 from thermicon.base.checks.arguments import checked
-from thermicon.base.numbers.cores import cores
 from thermicon.base.numbers.program import own_version
 from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.icons import IconSet
@@ -23,7 +22,6 @@ from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..sensation.percept import perceive
 from .batches import TRIALS, Job
 from .collected import collect_batches
-from .first_use import compiled_beside
 from .ranking import Ranking
 from .rules_of_thumb import rig_rules
 from .scores import assemble, objection, worst_of
@@ -101,7 +99,6 @@ def rank(
     nominal = model.nominal
     durations = [duration_s(icon, rig) for icon in members]
     end = run_end_s(durations)
-    compiled = compiled_beside(1 if isinstance(workers, str) else workers or cores())
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     fine = [] if task.gap_s is None else [k for k, trace in enumerate(traces) if objection(trace) is None]
     task, left = prepare_task(task, members, rig, end, fine, crowd.tracking, nominal)
@@ -110,7 +107,6 @@ def rank(
     percepts = [perceive(trace, nominal) for trace in traces]
     report()
 
-    compiled()
     felt = collect_batches(job, workers, report)
     scored, pairs = assemble(members, traces, durations, percepts, felt, job.forms[0], nominal)
     ranking = Ranking(
