@@ -192,16 +192,16 @@ def identify(
     samples: int = SAMPLES,
     first: int = 0,
     task: Task = USUAL,
-) -> tuple[Array, Confusion]:
-    """Pairwise d′ from memory (people, icons, icons), and confusions with the noise of people numbered from `first`."""
-    d_prime = memory_dprime(felt, form, crowd.memory, observer, task)
+    d_prime: Array | None = None,
+) -> Confusion:
+    """Confusions with the noise of people numbered from `first`; `d_prime` are those of the form, where known."""
     if form == "naming":
-        named = name_directly(
+        return name_directly(
             felt.episodes, observer, memory=crowd.memory, louder=task.louder(crowd.memory, form), lapse=crowd.lapse,
             seed=seed, samples=min(samples, NAMED_SAMPLES), first=first,
         )  # fmt: skip
-        return d_prime, named
-    return d_prime, confuse(d_prime, lapse=crowd.lapse, seed=seed, samples=samples, first=first)
+    apart = memory_dprime(felt, form, crowd.memory, observer, task) if d_prime is None else d_prime
+    return confuse(apart, lapse=crowd.lapse, seed=seed, samples=samples, first=first)
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,5 +243,9 @@ def identify_by(
 ) -> Identification:
     """The same by every form, of which laboratories have these shares."""
     forms, samples = list(shares), form_samples(shares, felt.episodes.counts.shape[1])
-    found = {form: identify(felt, form, crowd, observer, seed, samples[form], first, task) for form in forms}
-    return Identification(found[forms[0]][0], {form: named for form, (_, named) in found.items()}, shares)
+    d_prime = memory_dprime(felt, forms[0], crowd.memory, observer, task)
+    known = {forms[0]: d_prime}
+    found = {
+        form: identify(felt, form, crowd, observer, seed, samples[form], first, task, known.get(form)) for form in forms
+    }
+    return Identification(d_prime, found, shares)
