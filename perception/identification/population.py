@@ -88,7 +88,9 @@ class ReceptorTemperatures:
     def _of(
         cls, played: Sequence[Batch], depths_m: tuple[Both[float], ...], crowd: People, rig: Rig, icons: Sequence[Icon]
     ) -> ReceptorTemperatures:
-        cold, warm = (np.stack([batch.values[k] for batch in played]) for k in range(2))
+        several = len(played) > 1
+        cold, warm = (np.stack([each.values[k] for each in played]) if several else played[0].values[k][np.newaxis]
+                      for k in range(2))  # fmt: skip
         names, first = tuple(icon.name for icon in icons), played[0]
         return cls((cold, warm), depths_m, crowd.corneum_m(rig), first.time_s, rig.site, rig.contact.area_m2, names)
 
