@@ -60,6 +60,7 @@ class CurrentPlant(Plant[CurrentPlay, State]):
     ensemble: Ensemble
     _rests: dict[CurrentPlay, State] = field(default_factory=dict)
     _maps: dict[CurrentPlay, PlayMap] = field(default_factory=dict)
+    _passed: dict[float, dict[CurrentPlay, PlayMap]] = field(default_factory=dict)
     endings = ENDINGS
     quick = False
 
@@ -88,8 +89,7 @@ class CurrentPlant(Plant[CurrentPlay, State]):
 
     def now(self, play: CurrentPlay, state: State) -> Array:
         """WATCHED (4, corners) of states."""
-        pairs = list(zip(self.ensemble.networks, state.nodes_C, strict=True))
-        return np.array([[network.read(nodes, name) for network, nodes in pairs] for name in WATCHED])
+        return self.ensemble.read(state)
 
     def play(self, play: CurrentPlay, state: State) -> Iterator[tuple[Stretch, State]]:
         """The drive in stretches."""
@@ -118,7 +118,12 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         """A play and its pause as a map of the nodes."""
         if pause_s <= 0:
             return self._map(play)
-        return self._map(play).then(PlayMap(*self.ensemble.modes(play.rest_A).passage(pause_s)))
+        if pause_s not in self._passed:
+            self._passed.clear()  # pauses are tried one after another, and the maps of all would take memory
+        passed = self._passed.setdefault(pause_s, {})
+        if play not in passed:
+            passed[play] = self._map(play).then(PlayMap(*self.ensemble.modes(play.rest_A).passage(pause_s)))
+        return passed[play]
 
     def _map(self, play: CurrentPlay) -> PlayMap:
         if play not in self._maps:

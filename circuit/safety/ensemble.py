@@ -18,7 +18,7 @@ from ..rig.rigfile import RigError
 from ..solver.batch_inputs import Bank, Intervals, State, cut, left_over, run_on
 from ..solver.drive import Drive, DriveError
 from ..solver.modes import ConstantCurrent
-from ..solver.network import Network, network_of
+from ..solver.network import RECORDED, Network, network_of
 from ..solver.steady import state_under_current, steady_of
 from .corners import Corner, corners_of
 from .plant import Stretch
@@ -100,6 +100,15 @@ class Ensemble:
             hottest = np.full(network.nodes, HOTTEST_C)
             hottest[-1] = network.deep_C
             return hottest
+
+    def read(self, state: State) -> Array:
+        """WATCHED (4, corners) of states."""
+        which, nodes = [RECORDED.index(name) for name in WATCHED], state.nodes_C
+        if self.bank.passive:  # the heat sink stands between the lumps and the deep node, and is not read
+            nodes = np.delete(nodes, -2, axis=1)
+        places = self.bank.probe_start[:, which, np.newaxis] + np.arange(3)
+        near = np.take_along_axis(nodes[:, np.newaxis], places, axis=2)
+        return np.einsum("rpk,rpk->pr", self.bank.probe_weight[:, which], near)
 
     def play(
         self, drive: Drive | LaneDrives, state: State, rigs: Index | None = None
