@@ -97,16 +97,15 @@ class CurrentPlant(Plant[CurrentPlay, State]):
 
     def hold(self, play: CurrentPlay, state: State, times_s: Array) -> Array:
         """The resting current held."""
-        return self.ensemble.hold(play.rest_A, state, times_s)[0]
+        return self.ensemble.watch(play.rest_A, state, times_s, self.ensemble.lanes)
 
     def let_go(self, play: CurrentPlay, state: State) -> Iterator[tuple[Future, ...]]:
         """The last current held, zero current, and power off, which is the same."""
-        last_A = play.drive.current_A[..., -1]
-        held, _ = self.ensemble.hold(last_A if last_A.ndim else float(last_A), state, ENDING_ROWS_S)
+        last_A, lanes = play.drive.current_A[..., -1], self.ensemble.lanes
+        held = self.ensemble.watch(last_A if last_A.ndim else float(last_A), state, ENDING_ROWS_S, lanes)
         yield (Future((ENDING_ROWS_S, held)),)
-        zero = Future((ENDING_ROWS_S, self.ensemble.hold(0.0, state, ENDING_ROWS_S)[0]))
-        later, _ = self.ensemble.hold(0.0, state, np.append(0.0, LATE_S))
-        yield zero, Future((LATE_S, later[:, :, 1:]), drift=True)
+        zero = Future((ENDING_ROWS_S, self.ensemble.watch(0.0, state, ENDING_ROWS_S, lanes)))
+        yield zero, Future((LATE_S, self.ensemble.watch(0.0, state, LATE_S, lanes)), drift=True)
         yield (zero,)
 
     def after(self, play: CurrentPlay, pause_s: float, state: State) -> State:

@@ -5,7 +5,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cache, partial
 from typing import Generic
 
 import numpy as np
@@ -171,20 +171,24 @@ def plays_in(play: GatePlay, pause_s: float, session_s: float) -> int:
 
 
 def shortest_pause_s(repeating: Repeating[Played, States]) -> float | None:
-    """The shortest safe pause in s, to 0.1 s; None up to 10 min. Searched in corners that fail, and checked in all."""
-    deciding, pause_s = set[int](), 0.0
+    """The shortest safe pause in s, to 0.1 s; None up to 10 min.
+
+    Searched in corners that fail, each of which is asked once about a pause, and checked in all.
+    """
+    known, safe_in, pause_s = set[int](), list[Callable[[float], bool]](), 0.0
     while True:
-        worst = set(range(len(repeating.plant.corners)))
+        failing = set(range(len(repeating.plant.corners)))
         with suppress(UnjudgedError):
             tallies = [tally for drive_tallies in repeating.tallies(pause_s) for tally in drive_tallies]
             if all(tally.passes() for tally in tallies):
                 return pause_s
-            worst = {corner for tally in tallies for corner in tally.worst_lanes()}
-        if worst <= deciding:
+            failing = {corner for tally in tallies for corner in tally.worst_lanes()}
+        if failing <= known:
             break
-        deciding |= worst
-        few = Repeating(repeating.plant.only(sorted(deciding)), repeating.drives, repeating.limits)
-        found_s = shortest_of(partial(few.safe, endings=False))
+        few = Repeating(repeating.plant.only(sorted(failing - known)), repeating.drives, repeating.limits)
+        safe_in.append(cache(partial(few.safe, endings=False)))
+        known |= failing
+        found_s = shortest_of(lambda pause_s: all(safe(pause_s) for safe in safe_in))
         if found_s is None:
             return None
         pause_s = found_s
