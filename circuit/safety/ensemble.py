@@ -108,7 +108,7 @@ class Ensemble:
             nodes = np.delete(nodes, -2, axis=1)
         places = self.bank.probe_start[:, which, np.newaxis] + np.arange(3)
         near = np.take_along_axis(nodes[:, np.newaxis], places, axis=2)
-        return np.einsum("rpk,rpk->pr", self.bank.probe_weight[:, which], near)
+        return np.asarray(np.einsum("rpk,rpk->pr", self.bank.probe_weight[:, which], near))
 
     def play(
         self, drive: Drive | LaneDrives, state: State, rigs: Index | None = None
