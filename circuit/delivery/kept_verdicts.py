@@ -4,8 +4,6 @@ A file is named by a hash of everything that its verdicts depend on, and begins 
 values, from which nothing is executed. Whatever is not as it was written counts as absent, and is judged anew.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import platform
@@ -37,55 +35,36 @@ from ..safety.repeated import Repeated
 from .delivered_drive import DeliveredDrive
 from .ways import worst_cases
 
-TOOLS = ("numpy", "scipy", "numba", "llvmlite")
-"""Packages whose version may change a digit of a verdict."""
-LARGEST, MOST = 20_000_000, 100_000_000
-"""Bytes of a file, and of all; the oldest give way."""
-STARTED_S = time.time()
-RECORDS = {
-    record.__name__: record
-    for record in (
-        *(Before, Check, CutOff, Demands, Gate, Harm, HeldCutOff, Limits, Loop, PolarityCheck, Repeated, Rule),
-        *(Scenario, SingleFault, Uncertainty),
-    )
-}
-"""All that a verdict is made of, by name."""
+LARGEST, MOST, STARTED_S = 20_000_000, 100_000_000, time.time()
+"""Bytes of a file and of all, of which the oldest give way; when this program began."""
+SINGLE = CutOff, Demands, Harm, HeldCutOff, Loop, PolarityCheck, SingleFault
+RECORDS: tuple[type, ...] = (Before, Check, Gate, Limits, Repeated, Rule, Scenario, Uncertainty, *SINGLE)
+"""All that a verdict is made of."""
 
 
 def kept_or_judged(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> Sequence[Gate]:
     """What `worst_cases` finds, judged now or by this program before; only what may be written is kept."""
+    tools = [import_module(name).__version__ for name in ("numpy", "scipy", "numba", "llvmlite")]
     try:
-        folder, known_by = private_folder(cache_folder() / "verdicts"), digest_of(deliveries)
-    except (OSError, TypeError):  # nowhere to keep it, or something that a digest cannot hold
+        folder = private_folder(cache_folder() / "verdicts")
+        judged = text_of((code_digest(), sys.version, platform.machine(), tools, deliveries))
+    except (OSError, TypeError):  # nowhere to keep it, or something that a hash cannot hold
         return worst_cases(deliveries, pause_s)
-    known = read(folder / name_of(known_by, pause_s), len(deliveries))
-    if known is not None:
+    path = folder / sha256(judged + repr(pause_s).encode()).hexdigest()
+    if (known := read(path, len(deliveries))) is not None:
         return known
     verdicts = worst_cases(deliveries, pause_s)
     if all(verdict.colour != "red" for verdict in verdicts) and not changed_since(STARTED_S):
-        pauses_s = {verdict.repeated.pause_s for verdict in verdicts}
         with suppress(OSError, TypeError):  # a full disk, or something that a file cannot hold
-            for pause in {pause_s, *pauses_s} if len(pauses_s) == 1 else {pause_s}:  # None stands for the pause found
-                write(folder / name_of(known_by, pause), verdicts)
+            write(path, verdicts)
     return verdicts
-
-
-def digest_of(deliveries: Sequence[DeliveredDrive]) -> str:
-    """Hash of the program, of its tools, and of all that is delivered together, with rig and device."""
-    tools = [import_module(tool).__version__ for tool in TOOLS]
-    return sha256(text_of((code_digest(), sys.version, platform.machine(), tools, deliveries))).hexdigest()
-
-
-def name_of(digest: str, pause_s: float | None) -> str:
-    """The name of the file of verdicts with a pause."""
-    return sha256(f"{digest} {pause_s!r}".encode()).hexdigest()
 
 
 def changed_since(time_s: float) -> bool:
     """Whether the program on the disk was changed: what runs is then not what its digest is of."""
-    root = Path(__file__).parents[2]
-    sources = (path for package in DRIVES for path in (root / package.rpartition(".")[2]).rglob("*"))
-    return any(max(path.stat().st_ctime, path.stat().st_mtime) > time_s for path in sources if path.suffix in SUFFIXES)
+    folders = [Path(__file__).parents[2] / package.rpartition(".")[2] for package in DRIVES]
+    states = [path.stat() for folder in folders for path in folder.rglob("*") if path.suffix in SUFFIXES]
+    return any(max(state.st_ctime, state.st_mtime) > time_s for state in states)
 
 
 def read(path: Path, count: int) -> tuple[Gate, ...] | None:
@@ -96,28 +75,22 @@ def read(path: Path, count: int) -> tuple[Gate, ...] | None:
         if foreign or not stat.S_ISREG(state.st_mode) or state.st_size > LARGEST:
             return None
         seal, _, content = path.read_bytes().partition(b"\n")
-        if seal != sealed(path, content):
-            return None
-        verdicts = record_of(json.loads(content))
+        verdicts = record_of(json.loads(content)) if seal == sealed(path, content) else ()
         sound = len(verdicts) == count and all(type(one) is Gate and one.colour != "red" for one in verdicts)
+        return verdicts if sound else None
     except (OSError, ValueError, TypeError, LookupError, AttributeError, RecursionError):
         return None
-    return verdicts if sound else None
 
 
 def write(path: Path, verdicts: Sequence[Gate]) -> None:
     """Keep verdicts whole or not at all, and remove the oldest where all take too much; raises OSError."""
-    content = text_of(tuple(verdicts))
-    if len(content) > LARGEST:
-        return
-    draft = path.with_name(f"{path.name}.{secrets.token_hex(4)}")
+    draft, content, room = path.with_name(f"{path.name}.{secrets.token_hex(4)}"), text_of(tuple(verdicts)), MOST
     try:
         draft.write_bytes(sealed(path, content) + b"\n" + content)
         draft.chmod(0o600)
         draft.replace(path)
     finally:
         draft.unlink(missing_ok=True)
-    room = MOST
     with suppress(OSError):  # others write and remove at the same time
         for file in sorted(path.parent.iterdir(), key=lambda one: one.lstat().st_mtime, reverse=True):
             room -= file.lstat().st_size
@@ -131,19 +104,18 @@ def sealed(path: Path, content: bytes) -> bytes:
 
 
 def text_of(value: Any) -> bytes:
-    """Records, arrays and plain values as JSON, equal only where all of their types and values are."""
+    """Records, arrays and plain values as JSON, equal only where all of their types and values are; else TypeError."""
     return json.dumps(plain(value)).encode()
 
 
 def plain(value: Any) -> Any:
-    """A value as a list of its type and content, or itself; raises TypeError for what has none."""
+    """A value as a list of its type and content, or itself."""
     name = type(value).__name__
     if isinstance(value, np.ndarray) and not value.dtype.hasobject:
         return [name, value.dtype.str, value.shape, sha256(value.tobytes()).hexdigest()]
-    if is_dataclass(value):
-        return [name, {field.name: plain(getattr(value, field.name)) for field in fields(value)}]
-    if isinstance(value, BaseModel):
-        return [name, {key: plain(getattr(value, key)) for key in type(value).model_fields}]
+    if is_dataclass(value) or isinstance(value, BaseModel):
+        names = type(value).model_fields if isinstance(value, BaseModel) else [field.name for field in fields(value)]
+        return [name, {key: plain(getattr(value, key)) for key in names}]
     if isinstance(value, Mapping):
         return ["dict", [[plain(key), plain(each)] for key, each in value.items()]]
     if isinstance(value, tuple | list):
@@ -152,7 +124,7 @@ def plain(value: Any) -> Any:
 
 
 def record_of(value: Any) -> Any:
-    """The record that `plain` wrote; raises LookupError for any other than those of a verdict."""
+    """What `plain` wrote of a verdict; raises LookupError for any other record."""
     if not isinstance(value, list):
         return value
     name, content = value
@@ -160,4 +132,5 @@ def record_of(value: Any) -> Any:
         return tuple(map(record_of, content))
     if name == "dict":
         return {record_of(key): record_of(each) for key, each in content}
-    return RECORDS[name](**{key: record_of(each) for key, each in content.items()})
+    record = {record.__name__: record for record in RECORDS}[name]
+    return record(**{key: record_of(each) for key, each in content.items()})

@@ -22,14 +22,13 @@ from ..solver.drive import Drive
 from ..solver.steady import state_under_current
 from .checks import Before, Scenario
 from .demanded import demanded
-from .demands import Demanded
+from .demands import LATER_S, Demanded
 from .ensemble import Ensemble, LaneDrives
 from .plant import ENDING_ROWS_S, LATE_S, OFF_ROWS_S, Future, Plant, Single, Stretch
 from .playmap import PlayMap, least_bound
 from .polarity import TEST_S, testing_A
 from .repeated import Repeating
 from .single_faults import instants, side_by_side
-from .spans import LATER_S
 from .tally import COLDEST_C, HOTTEST_C, WATCHED, Tally
 
 ENDINGS = ("last value held", "zero current", "power off")
@@ -60,7 +59,7 @@ class CurrentPlant(Plant[CurrentPlay, State]):
     ensemble: Ensemble
     _rests: dict[CurrentPlay, State] = field(default_factory=dict)
     _maps: dict[CurrentPlay, PlayMap] = field(default_factory=dict)
-    _passed: dict[float, dict[CurrentPlay, PlayMap]] = field(default_factory=dict)
+    _passed: dict[CurrentPlay, tuple[float, PlayMap]] = field(default_factory=dict)
     endings = ENDINGS
     quick = False
 
@@ -117,12 +116,10 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         """A play and its pause as a map of the nodes."""
         if pause_s <= 0:
             return self._map(play)
-        if pause_s not in self._passed:
-            self._passed.clear()  # pauses are tried one after another, and the maps of all would take memory
-        passed = self._passed.setdefault(pause_s, {})
-        if play not in passed:
-            passed[play] = self._map(play).then(PlayMap(*self.ensemble.modes(play.rest_A).passage(pause_s)))
-        return passed[play]
+        if self._passed.get(play, (0.0, None))[0] != pause_s:  # of one pause: those of all would take memory
+            passed = self._map(play).then(PlayMap(*self.ensemble.modes(play.rest_A).passage(pause_s)))
+            self._passed[play] = pause_s, passed
+        return self._passed[play][1]
 
     def _map(self, play: CurrentPlay) -> PlayMap:
         if play not in self._maps:
@@ -224,8 +221,5 @@ def single_of_lanes(ensemble: Ensemble, drives: LaneDrives, limits: Limits) -> S
 
 def zero_current_C(ensemble: Ensemble) -> Array:
     """WATCHED (4, corners) that zero current leads to without limit of time."""
-    steady_C = np.full((len(WATCHED), len(ensemble.corners)), HOTTEST_C)
-    for lane, network in enumerate(ensemble.networks):
-        state = state_under_current(network, 0.0, in_the_end=True)
-        steady_C[:, lane] = [network.read(state, name) for name in WATCHED]
-    return steady_C
+    steady = [state_under_current(network, 0.0, in_the_end=True) for network in ensemble.networks]
+    return ensemble.read(State(ensemble.bank.states(steady)))

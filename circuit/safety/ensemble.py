@@ -103,12 +103,11 @@ class Ensemble:
 
     def read(self, state: State) -> Array:
         """WATCHED (4, corners) of states."""
-        which, nodes = [RECORDED.index(name) for name in WATCHED], state.nodes_C
-        if self.bank.passive:  # the heat sink stands between the lumps and the deep node, and is not read
-            nodes = np.delete(nodes, -2, axis=1)
+        which = [RECORDED.index(name) for name in WATCHED]
+        nodes = np.delete(state.nodes_C, -2, axis=1) if self.bank.passive else state.nodes_C  # without the heat sink
         places = self.bank.probe_start[:, which, np.newaxis] + np.arange(3)
-        near = np.take_along_axis(nodes[:, np.newaxis], places, axis=2)
-        return np.asarray(np.einsum("rpk,rpk->pr", self.bank.probe_weight[:, which], near))
+        near_C = np.take_along_axis(nodes[:, np.newaxis], places, axis=2)
+        return np.asarray((self.bank.probe_weight[:, which] * near_C).sum(axis=2).T)
 
     def play(
         self, drive: Drive | LaneDrives, state: State, rigs: Index | None = None

@@ -18,8 +18,7 @@ from ..rig.rig import Rig
 from ..rig.rules import Limits
 from .checks import Check, Scenario, worst_of
 from .corners import Corner
-from .demands import Demanded
-from .spans import ENDING_S, LATER_S
+from .demands import ENDING_S, LATER_S, Demanded
 from .tally import WATCHED, Tally
 
 if TYPE_CHECKING:

@@ -171,10 +171,7 @@ def plays_in(play: GatePlay, pause_s: float, session_s: float) -> int:
 
 
 def shortest_pause_s(repeating: Repeating[Played, States]) -> float | None:
-    """The shortest safe pause in s, to 0.1 s; None up to 10 min.
-
-    Searched in corners that fail, each of which is asked once about a pause, and checked in all.
-    """
+    """The shortest safe pause in s, to 0.1 s; None up to 10 min. Searched in corners that fail, and checked in all."""
     known, safe_in, pause_s = set[int](), list[Callable[[float], bool]](), 0.0
     while True:
         failing = set(range(len(repeating.plant.corners)))
