@@ -8,12 +8,12 @@ from tests.circuit.safety.test_single_faults import BEGINNINGS
 from thermicon.circuit import Rig, SessionPlan, play_session
 from thermicon.circuit.rig.rules import LONGEST_SESSION_MIN, Limits
 from thermicon.circuit.safety.current import ENDINGS
-from thermicon.circuit.safety.demands import ENDING_S, LATER_S
 from thermicon.circuit.safety.held import BEYOND_K
 from thermicon.circuit.safety.plant import RECOVERED_K
 from thermicon.circuit.safety.polarity import TEST_A, TEST_S
 from thermicon.circuit.safety.repeated import LONGEST_PAUSE_S
 from thermicon.circuit.safety.single_faults import INSTANTS, MARGIN, REACTIONS_S
+from thermicon.circuit.safety.spans import ENDING_S, LATER_S
 from thermicon.icons import load_library
 
 ROOT = Path(__file__).resolve().parents[1]

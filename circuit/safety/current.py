@@ -22,13 +22,14 @@ from ..solver.drive import Drive
 from ..solver.steady import state_under_current
 from .checks import Before, Scenario
 from .demanded import demanded
-from .demands import LATER_S, Demanded
+from .demands import Demanded
 from .ensemble import Ensemble, LaneDrives
 from .plant import ENDING_ROWS_S, LATE_S, OFF_ROWS_S, Future, Plant, Single, Stretch
 from .playmap import PlayMap, least_bound
 from .polarity import TEST_S, testing_A
 from .repeated import Repeating
 from .single_faults import instants, side_by_side
+from .spans import LATER_S
 from .tally import COLDEST_C, HOTTEST_C, WATCHED, Tally
 
 ENDINGS = ("last value held", "zero current", "power off")

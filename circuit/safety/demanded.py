@@ -20,7 +20,7 @@ from ..rig.rules import Limits
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 from .checks import Check, colour_of
-from .demands import PRACTICAL_S, CutOff, Demanded, Demands, HeldCutOff, SingleFault
+from .demands import CutOff, Demanded, Demands, HeldCutOff, SingleFault
 from .display import for_good_C
 from .ensemble import Ensemble
 from .exposure import cem43_min
@@ -32,6 +32,7 @@ from .polarity import least_fall_K, polarity_check, where_tests_begin
 from .repeated import LONGEST_PAUSE_S, PAUSE_STEP_S, Repeating, lengthened_s
 from .shown import Shown, healthy_C, longest_rest_s, shown_between
 from .single_faults import Faulty
+from .spans import PRACTICAL_S
 from .starts import Beginning, Starts
 from .stuck_rate import Limited, limited
 from .tally import HOTTEST_C, WATCHED, Tally

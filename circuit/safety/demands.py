@@ -16,12 +16,6 @@ LONGEST_REST_S = 1800.0
 """Held before the first play where the gate finds that 10 min of rest do not suffice."""
 USUAL_PAUSE_S = 60.0
 """Held between plays where the gate finds no pause: a minute is usual in thermal studies."""
-ENDING_S = 60.0
-"""How long each ending is followed in full: until somebody has noticed."""
-LATER_S = 600.0
-"""Zero current adds to the dose for 10 min, where the classes of contact of IEC 60601-1 Table 24 end."""
-PRACTICAL_S = 0.1
-"""A watchdog and a cut-off this quick are demanded rather than a longer pause, quicker ones are not: assumed."""
 QUICKEST_S = 0.01
 """A player acts so quickly where the gate finds no cut-off that is quick enough."""
 

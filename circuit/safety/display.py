@@ -22,13 +22,14 @@ from ..rig.rules import Limits
 from ..solver.modes import FELT, SkinModes, modes_of
 from .checks import Check, colour_of, worst_of
 from .corners import contact_corners
-from .demands import ENDING_S, PRACTICAL_S, CutOff, Demanded, Demands, SingleFault
+from .demands import CutOff, Demanded, Demands, SingleFault
 from .fault_limits import COLUMN_OF, FELT_COLUMNS
 from .held import INSIDE_K, Span, around_C, stays
 from .plant import ENDING_ROWS_S, LATE_S, OFF_ROWS_S, Future, Plant, Single, Stretch, left_s
 from .playmap import PlayMap, least_bound
 from .repeated import LONGEST_PAUSE_S, Repeating, lengthened_s
 from .single_faults import MARGIN
+from .spans import ENDING_S, PRACTICAL_S
 from .starts import Beginning, Starts
 from .tally import WATCHED, Tally
 

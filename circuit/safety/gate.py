@@ -14,11 +14,12 @@ from ..rig.uncertainty import Uncertainty, tightened
 from ..solver.drive import Drive, DriveError
 from .checks import Check, Judged, colour_of, findings_of, hard_of, hard_reason, worst_of
 from .current import CurrentPlant, CurrentPlay
-from .demands import ENDING_S, Demands
+from .demands import Demands
 from .display import DisplayCourse, DisplayPlant
 from .ensemble import Ensemble
 from .plant import Plant, Played, Single, States
 from .repeated import LONGEST_PAUSE_S, Repeated, Repeating, check_pause, plays_in, shortest_pause_s
+from .spans import ENDING_S
 
 
 @dataclass(frozen=True, slots=True)

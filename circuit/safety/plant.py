@@ -18,7 +18,8 @@ from ..rig.rig import Rig
 from ..rig.rules import Limits
 from .checks import Check, Scenario, worst_of
 from .corners import Corner
-from .demands import ENDING_S, LATER_S, Demanded
+from .demands import Demanded
+from .spans import ENDING_S, LATER_S
 from .tally import WATCHED, Tally
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from thermicon.base.files.inputs import shipped_table
 from thermicon.base.words.number_text import signed, significant, unit_text
 
 from ..rig.uncertainty import WORDS
-from .demands import ENDING_S, PRACTICAL_S
+from .spans import ENDING_S, PRACTICAL_S
 
 if TYPE_CHECKING:
     from .checks import Check, Cure, Scenario

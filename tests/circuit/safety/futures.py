@@ -7,9 +7,9 @@ import numpy as np
 from thermicon.base.numbers.arrays import Array
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.safety.corners import Corner
-from thermicon.circuit.safety.demands import ENDING_S
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.plant import ENDING_ROWS_S
+from thermicon.circuit.safety.spans import ENDING_S
 from thermicon.circuit.solver.drive import Drive
 
 
