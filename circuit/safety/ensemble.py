@@ -18,7 +18,7 @@ from ..rig.rigfile import RigError
 from ..solver.batch_inputs import Bank, Intervals, State, cut, run_on
 from ..solver.drive import Drive, DriveError
 from ..solver.modes import ConstantCurrent
-from ..solver.network import Network, network_of
+from ..solver.network import RECORDED, Network, network_of
 from ..solver.steady import state_under_current, steady_of
 from .corners import Corner, corners_of
 from .plant import Stretch
@@ -100,6 +100,14 @@ class Ensemble:
             hottest = np.full(network.nodes, HOTTEST_C)
             hottest[-1] = network.deep_C
             return hottest
+
+    def read(self, state: State) -> Array:
+        """WATCHED (4, corners) of states."""
+        which = [RECORDED.index(name) for name in WATCHED]
+        nodes = np.delete(state.nodes_C, -2, axis=1) if self.bank.passive else state.nodes_C  # without the heat sink
+        places = self.bank.probe_start[:, which, np.newaxis] + np.arange(3)
+        near_C = np.take_along_axis(nodes[:, np.newaxis], places, axis=2)
+        return np.asarray((self.bank.probe_weight[:, which] * near_C).sum(axis=2).T)
 
     def play(
         self, drive: Drive | LaneDrives, state: State, rigs: Index | None = None

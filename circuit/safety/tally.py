@@ -99,8 +99,9 @@ class Tally:
         return np.asarray(self._sums[self._rule_of[place]])
 
     def worst_lanes(self) -> tuple[int, ...]:
-        """Lanes that are worst by some hard rule, each once."""
-        return tuple(dict.fromkeys(self._worst()[self._present & self._hard].tolist()))
+        """Lanes that are worst by some hard rule that is exceeded, each once."""
+        exceeded = ~np.isnan(self._since_s).all(axis=1)
+        return tuple(dict.fromkeys(self._worst()[self._hard & exceeded].tolist()))
 
     def beyond(self) -> Array:
         """Excess over each rule in each lane (rules, lanes), as `checks.beyond` of its check."""
