@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon, IconSet
 
 MOST_VALUES, MOST_CURVED, MOST_NARROW = 10_000, 6, 2
-"""Values of a sweep, and icons whose curves its figure, or one for a column, draws at most."""
+"""Values of a sweep, icons whose curves its figure draws, and icons up to which one for a column has curves."""
 FORM = (
     "give KEY=LOW:HIGH:N, for example contact.area_cm2=4:16:7, LOW:HIGH:Nlog for equal ratios, or values such as "
     "site=thenar,fingertip"
@@ -177,12 +177,12 @@ def swept_curves(
     from thermicon.icons.pictures.draw import MOST_DRAWN, evenly
 
     drawn = [values[place] for place in evenly(len(values), MOST_DRAWN)] if key != AGE else []
-    runs = {icon.name: {value: _trace(icon, rig, {key: value}, tail_s) for value in drawn} for icon in icons}
-    curves = {
-        name: {value: trace for value, trace in each.items() if not isinstance(trace, str)}
-        for name, each in runs.items()
-    }
-    return {name: traces for name, traces in curves.items() if traces}
+    curves = {}
+    for icon in icons:
+        runs = {value: _trace(icon, rig, {key: value}, tail_s) for value in drawn}
+        if traces := {value: run for value, run in runs.items() if not isinstance(run, str)}:
+            curves[icon.name] = traces
+    return curves
 
 
 def _with_people(
@@ -265,10 +265,10 @@ def sweep_command(
         fail(f"--vary {key}: none of the {len(values)} values can be played; the first: {reason}")
     for line in (*outside_lines(key, values, whole, where), *sweep_lines(frame, [each.name for each in icons], key)):
         note(line)
-    most = MOST_NARROW if figure.look.narrow else MOST_CURVED
-    if len(icons) > most and figure.figure is not None:
-        note(f"note: the figure has the curves of the first {most} of {len(icons)} icons; --icon chooses one")
-    figure.write(lambda: sweep_figure(frame, figure.look, swept_curves(icons[:most], where, key, values, tail)))
+    drawn = [] if figure.look.narrow and len(icons) > MOST_NARROW else icons[:MOST_CURVED]
+    if len(drawn) < len(icons) and figure.figure is not None:
+        note(f"note: the figure has the curves of {len(drawn)} of {len(icons)} icons; --icon chooses one")
+    figure.write(lambda: sweep_figure(frame, figure.look, swept_curves(drawn, where, key, values, tail)))
     if output is not None:
         write_frame(frame, output)
     else:

@@ -27,7 +27,7 @@ MOST_TICKS, LETTER_INCHES, TURNED_INCHES = 6, 0.08, 1.0
 WIDE = 3
 """Panels beside one another, fewer in a column."""
 COLUMN_INCHES, HIGHEST = 6.8, 2.6
-"""Height of all panels of a figure for a column (in print at most 1.5 widths tall), and of one panel."""
+"""Height of the panels over the key in a figure for a column (in print at most 1.5 widths tall), and of one panel."""
 PANELS = (
     (("largest_miss_K",), "largest miss (K)"),
     (("current_min_A", "current_max_A"), "current (A), least dashed"),
@@ -135,7 +135,7 @@ def _small_multiples(count: int, across: int, curves: int) -> tuple[Figure, list
     rows = -(-curves // across)
     across = min(across, count)
     down = -(-count // across)
-    height = HIGHEST if across == WIDE else min(HIGHEST, COLUMN_INCHES / (down + rows))
+    height = HIGHEST if across == WIDE else min(HIGHEST, COLUMN_INCHES / down)
     figure = new_figure(max(7.2, 3.2 * across), 0.4 + height * (down + rows))
     grid: Any = figure.add_gridspec(down, across)
     above: list[Axes] = []

@@ -1,4 +1,4 @@
-"""Curves of a sweep over one another, coloured by the value of the key."""
+"""Curves of a sweep over one another in colours of the values."""
 
 from __future__ import annotations
 
@@ -44,6 +44,7 @@ def draw_curves(axes: list[Axes], curves: Curves, label: str, *, log: bool) -> N
         ax.set_xlabel("time (s)", fontsize=8)
         ax.tick_params(labelsize=8)
         ax.margins(x=0.0)
+        ax.locator_params(axis="y", nbins=3)
     axes[0].set_ylabel(SHOWN[column], fontsize=8)
     plain(*axes)
     figure: Any = axes[0].figure

@@ -100,7 +100,7 @@ def test_a_picture_is_drawn_from_the_files_of_its_page(builder: dict[str, Module
     site = builder["staging"].Staging(tmp_path / "site", {}, tmp_path / "kept")
     text = site.filled(f"{page}<!-- picture: simulate a.cue | An icon -->\n", PurePosixPath("docs/x.md"))
     [picture] = (tmp_path / "site" / "pictures").iterdir()
-    assert f"![An icon](/pictures/{picture.name})" in text
+    assert f"```{{figure}} /pictures/{picture.name}\n:alt: An icon\n:figclass: beside\n" in text
     assert picture.read_bytes().startswith(b"\x89PNG")
     with pytest.raises(RuntimeError, match=r"thermicon simulate b\.cue --figure"):
         site.filled(f"{page}<!-- picture: simulate b.cue | Another -->\n", PurePosixPath("docs/x.md"))
