@@ -29,7 +29,7 @@ NO_LEXER = ("", "csv", "cue")
 """Languages of blocks that a code host colours and Pygments does not know, or none."""
 SLOT = re.compile(r"<!-- site: (?P<name>[\w ]+) -->\n(?P<meanwhile>.*?)<!-- end of site -->\n?", re.DOTALL)
 """What only the site has, made from the program; a code host shows the sentences between the marks instead."""
-HEADINGS = re.compile(r"\A(?:#+ .+\n\n)+")
+HEADINGS = re.compile(r"\A(?:#+ .+\n\n)*")
 """What stands above the first paragraph of a page, beside which its picture stands."""
 
 NOT_SEARCHED = ("contribute/changelog.md", "reference/errors.md", "reference/refusals.md")
@@ -106,7 +106,7 @@ class Staging:
         above: list[str] = []
         text = MARK.sub(picture, SLOT.sub(content, text))
         start = HEADINGS.search(text)
-        return text[: start.end()] + "".join(above) + text[start.end() :] if start and above else text
+        return text[: start.end()] + "".join(above) + text[start.end() :] if start else text
 
     def linked(self, text: str, where: PurePosixPath, here: PurePosixPath) -> str:
         """Return a page of the repository with links as they are on the site, and with blocks in colour."""
