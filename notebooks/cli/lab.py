@@ -24,6 +24,8 @@ FILES = (".cue", ".csv", ".ipynb", ".json", ".py", ".toml", ".txt")
 FIRST = "01_first_icon.ipynb"
 PROMPT = "--ServerApp.kernel_websocket_connection_class=thermicon.notebooks.cli.prompt_socket.PromptSocket"
 """Option of JupyterLab by which answers of a kernel on this machine do not wait; a gateway has a socket of its own."""
+NO_NEWS = "--LabApp.news_url=None"
+"""Option of JupyterLab by which it does not ask whether to show its news."""
 ENDS_ITSELF_S, TIDIES_UP_S = 3.0, 10.0
 
 
@@ -89,7 +91,7 @@ def command_of(folder: Path, no_browser: bool, port: int | None) -> list[str]:
 
     With -P, Python imports nothing from the folder that it is started in.
     """
-    words = [sys.executable, "-P", "-m", "jupyterlab", str(folder.resolve() / FIRST)]
+    words = [sys.executable, "-P", "-m", "jupyterlab", str(folder.resolve() / FIRST), NO_NEWS]
     if "JUPYTER_GATEWAY_URL" not in os.environ:
         words.append(PROMPT)
     words += ["--no-browser"] if no_browser else []
