@@ -44,7 +44,8 @@ class DesignView {
     this.editor.element.prepend(make("div", { class: "tm-editor-bar", role: "toolbar", "aria-label": "Text" }, this.undo, this.redo, this.palette.element));
     this.player.bar.append(this.sides.pin);
     const split = make("div", { class: "tm-split" }, make("div", { class: "tm-left" }, this.editor.element, this.player.element), this.timeline.element);
-    return make("div", { class: "tm-design" }, bar, this.sides.element, split, this.noteList);
+    const escape = (event) => event.key === "Escape" && this.player.stop() && event.stopPropagation();
+    return make("div", { class: "tm-design", onkeydown: escape }, bar, this.sides.element, split, this.noteList);
   }
 
   edited(text) {

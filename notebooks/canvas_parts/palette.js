@@ -6,7 +6,7 @@ class Palette {
     Object.assign(this, { editor, post, say, asked: false });
     const shapes = Object.entries(CUE_WORDS.shapes).map(([name, text]) =>
       make("button", { type: "button", class: "tm-shape", onclick: () => this.drop(name, text) }, make("b", {}, name), make("code", {}, text)));
-    this.icons = make("select", { class: "tm-picker", "aria-label": "Icon of a shipped set" }, make("option", {}, "loading …"));
+    this.icons = make("select", { class: "tm-select", "aria-label": "Icon of a shipped set" }, make("option", {}, "loading …"));
     this.take = make("button", { type: "button", class: "tm-button", onclick: () => this.takeIcon() }, "Insert icon");
     this.panel = make("div", { class: "tm-palette-panel", hidden: true, id: uniqueId("palette") },
       make("div", { class: "tm-shapes" }, ...shapes), make("div", { class: "tm-palette-icons" }, this.icons, this.take));

@@ -18,7 +18,7 @@ class Player {
     const button = (text, title, act) => make("button", { type: "button", class: "tm-button", title, onclick: act }, text);
     this.play = button("▶ Play", "in real time, as predicted (Space on the time line; Esc stops)", () => this.toggle());
     const speeds = SPEEDS.map(([speed, name]) => make("option", { value: speed, selected: speed === 1 }, name));
-    this.speed = make("select", { class: "tm-picker tm-speed", "aria-label": "Speed", onchange: () => (this.run.speed = Number(this.speed.value)) }, ...speeds);
+    this.speed = make("select", { class: "tm-select tm-speed", "aria-label": "Speed", onchange: () => (this.run.speed = Number(this.speed.value)) }, ...speeds);
     this.sound = make("button", {
       type: "button", class: "tm-button", "aria-pressed": "false", title: "a tone: its pitch is the skin's temperature, its loudness what is felt",
       onclick: () => this.turnTone(),

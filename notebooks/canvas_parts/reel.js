@@ -27,7 +27,7 @@ class Reel {
       this.body.replaceChildren(this.line.element);
       this.line.keys = this.player.timeline.keys;
       this.next();
-      this.line.stage.focus();
+      this.line.stage.focus({ preventScroll: true });
     } else this.beginQuiz();
     this.age();
   }
@@ -67,9 +67,9 @@ class Reel {
     const heads = ["icon", "played", "right", "taken for"].map((head) => make("th", { scope: "col" }, head));
     const table = make("table", { class: "tm-counts" }, make("caption", {}, REHEARSAL), make("thead", {}, make("tr", {}, ...heads)), this.table);
     const keys = make("div", { class: "tm-quiz-keys" }, this.prompt, this.again, this.go);
-    this.body.replaceChildren(make("div", { class: "tm-quiz" }, this.player.patch.element, make("div", {}, keys, this.answers)), table);
+    this.body.replaceChildren(make("div", { class: "tm-quiz" }, this.player.patch.element, make("div", {}, keys, this.answers, table)));
     this.ask();
-    this.title.focus();
+    this.title.focus({ preventScroll: true });
   }
 
   /** Each icon comes once, in an order that nobody knows, before any comes again. */
@@ -104,7 +104,7 @@ class Reel {
     else count.others.set(name, (count.others.get(name) ?? 0) + 1);
     setText(this.prompt, name === right ? `Right: ${right}.` : `It was ${right}, not ${name}.`);
     this.show();
-    this.go.focus();
+    this.go.focus({ preventScroll: true });
   }
 
   show() {
@@ -127,6 +127,6 @@ class Reel {
     this.player.place.replaceChildren(this.player.patch.element);
     this.body.replaceChildren();
     this.player.follow();
-    if (inside) this.player.timeline.stage.focus();
+    if (inside) this.player.timeline.stage.focus({ preventScroll: true });
   }
 }
