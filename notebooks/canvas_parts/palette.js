@@ -3,7 +3,7 @@
 class Palette {
   /** `post` asks for the icons of shipped sets. */
   constructor(editor, post, say) {
-    Object.assign(this, { editor, post, say, asked: false });
+    Object.assign(this, { editor, post, say, texts: null });
     const shapes = Object.entries(CUE_WORDS.shapes).map(([name, text]) =>
       make("button", { type: "button", class: "tm-shape", onclick: () => this.drop(name, text) }, make("b", {}, name), make("code", {}, text)));
     this.icons = make("select", { class: "tm-select", "aria-label": "Icon of a shipped set" }, make("option", {}, "loading …"));
@@ -24,9 +24,7 @@ class Palette {
     this.panel.hidden = !open;
     this.button.setAttribute("aria-expanded", String(open));
     if (!open && inside) this.button.focus();
-    if (!open || this.asked) return;
-    this.asked = true;
-    this.post({ type: "palette" });
+    if (open && !this.texts) this.post({ type: "palette" });
   }
 
   /** Sets of the kernel: names with the texts of their icons. */
