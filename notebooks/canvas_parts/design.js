@@ -73,6 +73,7 @@ class DesignView {
     for (const place of [this.root, this.root.closest(".thermicon")]) place?.toggleAttribute("data-older", older);
     this.badge.show(shown, Boolean(why) && !late);
     this.strip.age(older);
+    this.player.reel.age();
     Object.assign(this.root.dataset, { icon: icon ?? "", colour: shown.colour });
   }
 
