@@ -117,8 +117,9 @@ def _play(drawing: Drawing) -> dict[str, Any]:
     told: dict[str, Any] = {"felt": percept.felt, "share": percept.detected_probability}
     last_s = duration_s(drawing.icon, drawing.rig)
     if percept.felt:
-        strong = np.flatnonzero(np.maximum(percept.psi_cold, percept.psi_warm) >= FELT_DPRIME)
-        last_s = max(last_s, percept.onset_s or 0.0, *(percept.dt_s * strong[-1:]))
+        last_s = max(last_s, percept.onset_s or 0.0)
+        faint = np.maximum(percept.psi_cold, percept.psi_warm)[percept.time_s >= last_s] < FELT_DPRIME
+        last_s += percept.dt_s * int(faint.argmax()) if faint.any() else end_s
         told |= {"onset": percept.onset_s, "quality": percept.channel}
     return {**told, "until": min(float(last_s), end_s)}
 
