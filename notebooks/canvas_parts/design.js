@@ -179,10 +179,10 @@ class Badge {
   show({ colour, text, more }, passing) {
     const { word, sign } = BADGES[colour] ?? BADGES.grey;
     this.element.dataset.colour = colour;
-    this.button.title = text;
+    if (this.button.title !== text) this.button.title = text;
     setText(this.pill, `${sign} ${word}`);
     setText(this.text, text.slice(text.indexOf(`${word}: `) < 0 ? 0 : text.indexOf(`${word}: `) + word.length + 2)); // the pill says the word
-    this.button.title = text;
+    if (this.button.title !== text) this.button.title = text;
     const lines = (more ?? []).join("\n");
     if (lines !== this.lines) {
       this.lines = lines;

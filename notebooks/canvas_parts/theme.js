@@ -46,7 +46,8 @@ function tendControls(root) {
     for (const control of knob.querySelectorAll(".noUi-handle, select, .widget-readout")) {
       if (name && control.getAttribute("aria-label") !== name) control.setAttribute("aria-label", name);
       const handle = control.classList.contains("noUi-handle");
-      control.tabIndex = control === now ? 0 : -1;
+      const stop = control === now ? 0 : -1;
+      if (control.tabIndex !== stop || !control.hasAttribute("tabindex")) control.tabIndex = stop;
       if (!handle || control.dataset.tended) continue;
       Object.assign(control.dataset, { tended: true, lmSuppressShortcuts: true });
       control.title = "[ and ] go to another slider, Enter to its number";

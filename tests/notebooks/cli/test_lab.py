@@ -43,6 +43,14 @@ def test_without_jupyterlab_the_cure_is_told_and_nothing_written(
     assert not (tmp_path / "mine").exists()
 
 
+def test_jupyterlab_does_not_ask_about_its_news(tmp_path: Path) -> None:
+    from jupyterlab.labapp import LabApp
+
+    app = LabApp()
+    app.parse_command_line([word for word in lab.command_of(tmp_path, True, None) if word.startswith("--")])
+    assert app.news_url is None
+
+
 def test_a_server_that_fails_is_told(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     failing = [sys.executable, "-c", "raise SystemExit(4)"]
     monkeypatch.setattr(lab, "command_of", lambda *_: failing)
