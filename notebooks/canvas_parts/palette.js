@@ -1,7 +1,7 @@
 // Shapes, and icons of shipped sets, that are put in at the caret as the cue text that they are.
 
 class Palette {
-  /** `post` asks for the icons of shipped sets. */
+  /** `post` asks for the icons of shipped sets, and to show an icon that was put in. */
   constructor(editor, post, say) {
     Object.assign(this, { editor, post, say, texts: null });
     const shapes = Object.entries(CUE_WORDS.shapes).map(([name, text]) =>
@@ -47,6 +47,8 @@ class Palette {
     const statements = !/^icon\b/.test(text);
     const put = statements && block?.kind !== "set" && block ? within(doc, block, text) : behind(doc, block, view.state.selection.main.head, name, text, statements);
     view.dispatch({ changes: put, selection: { anchor: put.from + put.insert.length }, scrollIntoView: true, userEvent: "input" });
+    const fresh = /^\s*icon\s+([^\s({]+)\s*[^(]/.exec(put.insert);
+    if (fresh) this.post({ type: "icon", name: fresh[1] });
     this.open(false);
     this.editor.focus();
     this.say(`${name} inserted`);

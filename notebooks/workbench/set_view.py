@@ -105,8 +105,11 @@ class SetView(LiveView[SetRequest]):
 
     def _compare(self, ranking: Ranking) -> None:
         """The set beside that of the pinned version, as ``thermicon compare`` does."""
-        other = self._pinned()
-        html = "" if other is None else shown(*sets_report(("pinned", "now"), (other, ranking)))
+        before, other = self.design.pinned, self._pinned()
+        html = ""
+        if before is not None and other is not None and before.request != self._source():
+            table, *_, last = sets_report(("pinned", "now"), (other, ranking))
+            html = shown(table, last)
         self.said["versions"].value, self.said["versions"].layout.display = html, "" if html else "none"
 
     def pick(self, a: str, b: str) -> None:

@@ -53,7 +53,7 @@ def test_no_view_of_the_workbench_has_a_serious_finding(bench: Page, scheme: str
     open_tab(page, "Design")
     page.get_by_role("button", name="Sliders").click()
     page.get_by_role("button", name="Pin", exact=True).click()
-    page.get_by_role("button", name="Insert").click()
+    page.get_by_role("button", name="Insert ▾").click()
     expect(page.get_by_label("Icon of a shipped set")).to_contain_text("cooling-step")
     wrong["palette, pinned"] = findings(page)
     for name in ("Play set", "Quiz"):

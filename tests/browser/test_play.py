@@ -185,9 +185,9 @@ def test_a_pinned_version_lies_behind_and_one_key_changes_sides(player: Bench) -
 @pytest.mark.parametrize(
     ("caret", "now"),
     [
-        (TEXT.index("hold"), TEXT.replace("hold for 4\n", "hold for 4\n  pulse cool by 4 °C for 1 s\n")),
-        (TEXT.index("{") + 1, TEXT.replace("{\n", "{\n  pulse cool by 4 °C for 1 s\n")),
-        (len(TEXT), f"{TEXT}\nicon pulse {{\n  pulse cool by 4 °C for 1 s\n}}\n"),
+        (TEXT.index("hold"), TEXT.replace("hold for 4\n", "hold for 4\n  pulse cool by 3 °C for 2 s\n")),
+        (TEXT.index("{") + 1, TEXT.replace("{\n", "{\n  pulse cool by 3 °C for 2 s\n")),
+        (len(TEXT), f"{TEXT}\nicon pulse {{\n  pulse cool by 3 °C for 2 s\n}}\n"),
     ],
 )
 def test_a_shape_is_put_in_as_text_where_the_caret_is(player: Bench, caret: int, now: str) -> None:

@@ -6,7 +6,7 @@ import numpy
 import pytest
 
 from tests.notebooks.workbench.openbench import wait
-from thermicon.circuit import Rig
+from thermicon.circuit import Rig, simulate
 from thermicon.icons import parse
 from thermicon.notebooks.timeline.frames import WORDS
 from thermicon.notebooks.workbench.design_model import DesignModel
@@ -75,8 +75,10 @@ def test_both_sides_are_ranked_even_where_one_was_changed_at_once(
     assert sent[-1]["sides"] == []
 
 
-def test_all_that_the_palette_offers_is_cue_text() -> None:
+def test_all_that_the_palette_offers_is_cue_text_and_its_shapes_are_reached() -> None:
     offered = [text for texts in shipped_texts().values() for text in texts.values()]
     assert len(offered) > 30
-    for text in (*offered, *(f"icon a {{\n{shape}\n}}" for shape in WORDS["shapes"].values())):
+    for text in offered:
         assert len(parse(f"cue 1\nset {{ control display; baseline 32 °C }}\n{text}")) >= 1
+    for shape in WORDS["shapes"].values():
+        assert simulate(parse(f"cue 1; icon a {{ {shape.replace(chr(10), '; ')} }}").icons[0], "thenar").reachable
