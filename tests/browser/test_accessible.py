@@ -56,6 +56,7 @@ def test_no_view_of_the_workbench_has_a_serious_finding(bench: Page, scheme: str
     page.get_by_role("button", name="Insert ▾").click()
     expect(page.get_by_label("Icon of a shipped set")).to_contain_text("cooling-step")
     wrong["palette, pinned"] = findings(page)
+    page.keyboard.press("Escape")
     for name in ("Play set", "Quiz"):
         page.get_by_role("button", name=name).click()
         expect(page.locator(".tm-reel")).to_be_visible()

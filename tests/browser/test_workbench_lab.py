@@ -95,6 +95,7 @@ def test_a_laptop_shows_curves_and_errors_without_scrolling_and_four_sliders_in_
     sliders = page.get_by_role("button", name="Sliders")
     sliders.click()
     handle = page.locator(".noUi-handle").first
+    expect(handle).to_be_visible()
     handle.focus()
     page.keyboard.press("]")
     expect(page.locator(".noUi-handle").nth(1)).to_be_focused()
@@ -218,7 +219,9 @@ def test_it_goes_on_after_a_reload_and_a_restart(bench: Page, lab: Server) -> No
     assert (lab.folder / "workbench.ipynb").stat().st_size < MOST_SAVED
     wait_until_drawn(bench)
     expect_text(bench, TWO)
+    bench.get_by_role("button", name="Sliders").click()
     slider = bench.locator(".thermicon-knob").filter(has_text="contact area").locator(".noUi-handle")
+    expect(slider).to_be_visible()
     slider.focus()
     bench.keyboard.press("ArrowRight")
     expect(bench.locator(".thermicon-knob .changed")).to_have_text("contact area (cm²) · rig 9 cm²")
