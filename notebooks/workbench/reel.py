@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 from thermicon.icons import Family, Icon, load_library
 from thermicon.icons.files.shipped import library_names
@@ -38,7 +37,6 @@ def reel_of(design: DesignModel) -> tuple[list[CanvasFrame], str]:
     return frames, "; ".join(said)
 
 
-@cache
 def shipped_texts() -> dict[str, dict[str, str]]:
     """Texts of the icons of shipped sets, by set and name; a large family is one text."""
     found = {}
