@@ -47,7 +47,7 @@ ELSEWHERE = (
     "|put (?:semicolons|names)|own file|sort them|line is|keep (?:every|an hour)|split the|no column is left|are needed"
     "|add the (?:times|column)|give (?:the|size_K|one row)|name the blocks|number the trials|one of each|stands alone"
     "|at most 100|needs at least|log faster|whole number|units? of the times|connect it|without their decimals"
-    "|no names are left|name another column|THEIRS|ICON"
+    "|no names are left|name another column|needed is|THEIRS|ICON"
 )
 """Cures for which a person needs another program, another file, or to know what the sentence cannot."""
 SCALES = {
@@ -119,7 +119,7 @@ def obeyed(error: Exception, door: str, text: str, options: Options) -> tuple[st
         if re.search("leave the cell empty|leave it empty", said):
             for line in {at, *(int(each) - 1 for each in re.findall(r"\d+", said.partition("likewise in line ")[2]))}:
                 text = _changed(text, door, options, line, name[1], "")
-            return door, text, options
+            return (door, text, options) if text != "\n".join(lines) else None
     if found := re.search(r"no column ['\"](.+)['\"]; did you mean (\S+)\?", said):
         return (door, text.replace(found[1], found[2], 1), options) if found[1] in text else None
     if found := re.search(r"did you mean '(.+)'\? Spell", said):
@@ -179,6 +179,8 @@ def _rewritten(
     table = read_table(
         text.encode("utf-8", "replace"), lambda *about: ValueError(about), "", 10**6, DOORS[door].names, theirs
     )  # type: ignore[arg-type, return-value]
+    if name not in table.header:
+        return text  # of a wide table, which has such a cell for each trial
     lines, at, mark = text.split("\n"), table.header.index(name), table.mark or ","
     factor = table.names.renamed.get(name, ("", Unit("")))[1].factor if ours else 1.0
     for line, row in zip(table.lines, table.rows, strict=True):
