@@ -51,7 +51,8 @@ def attempts(
         notes = [*map(str, getattr(found, "notes", ())), *(str(each.message) for each in raised)]
         error = error or ValueError(" ".join(notes))
         sentence = " ".join(str(error).split())
-        assert sentence not in said or "remove" in sentence + said[-1], (door, sentence, data[:300])
+        headless = door == "rig" and "is missing" in sentence  # keys of a table that lost its name need a person
+        assert sentence not in said or headless or "remove" in sentence + said[-1], (door, sentence, data[:300])
         said.append(sentence)
         if (after := obeyed(error, door, text, options)) is None:
             break
