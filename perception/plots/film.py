@@ -80,7 +80,7 @@ class Film:
     def svg(self, *, still: bool = False) -> str:
         """Return the film as SVG text, which moves three times; it stands still where people want no motion.
 
-        ``still``: it stands still for everybody, when most is felt and has been reported.
+        ``still``: a picture without motion, at the strongest sensation and not before the report.
         """
         figure, _ = self._drawn()
         above, below = figure.axes[0], figure.axes[2]
