@@ -5,10 +5,7 @@ values, from which nothing is executed. Whatever is not as it was written counts
 """
 
 import json
-import os
 import platform
-import secrets
-import stat
 import sys
 import time
 from collections.abc import Mapping, Sequence
@@ -23,7 +20,7 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
-from thermicon.base.files.cache_folder import WRITABLE_BY_OTHERS, cache_folder, private_folder
+from thermicon.base.files.cache_folder import cache_folder, private_folder, sealed_content, write_sealed
 from thermicon.base.numbers.program import DRIVES, SUFFIXES, code_digest
 
 from ..rig.rules import Limits, Rule
@@ -69,38 +66,25 @@ def changed_since(time_s: float) -> bool:
 
 def read(path: Path, count: int) -> tuple[Gate, ...] | None:
     """Verdicts on so many drives; None where there is no file, or not one that this user wrote as it is."""
+    if (content := sealed_content(path, LARGEST)) is None:
+        return None
     try:
-        state = path.lstat()
-        foreign = sys.platform != "win32" and (state.st_uid != os.geteuid() or state.st_mode & WRITABLE_BY_OTHERS)
-        if foreign or not stat.S_ISREG(state.st_mode) or state.st_size > LARGEST:
-            return None
-        seal, _, content = path.read_bytes().partition(b"\n")
-        verdicts = record_of(json.loads(content)) if seal == sealed(path, content) else ()
+        verdicts = record_of(json.loads(content))
         sound = len(verdicts) == count and all(type(one) is Gate and one.colour != "red" for one in verdicts)
         return verdicts if sound else None
-    except (OSError, ValueError, TypeError, LookupError, AttributeError, RecursionError):
+    except (ValueError, TypeError, LookupError, AttributeError, RecursionError):
         return None
 
 
 def write(path: Path, verdicts: Sequence[Gate]) -> None:
     """Keep verdicts whole or not at all, and remove the oldest where all take too much; raises OSError."""
-    draft, content, room = path.with_name(f"{path.name}.{secrets.token_hex(4)}"), text_of(tuple(verdicts)), MOST
-    try:
-        draft.write_bytes(sealed(path, content) + b"\n" + content)
-        draft.chmod(0o600)
-        draft.replace(path)
-    finally:
-        draft.unlink(missing_ok=True)
+    write_sealed(path, text_of(tuple(verdicts)))
+    room = MOST
     with suppress(OSError):  # others write and remove at the same time
         for file in sorted(path.parent.iterdir(), key=lambda one: one.lstat().st_mtime, reverse=True):
             room -= file.lstat().st_size
             if room < 0:
                 file.unlink()
-
-
-def sealed(path: Path, content: bytes) -> bytes:
-    """Hash of a file's content and of its name, so that none takes the place of another."""
-    return sha256(path.name.encode() + content).hexdigest().encode()
 
 
 def text_of(value: Any) -> bytes:

@@ -67,8 +67,9 @@ class Tally:
         if self._begun is None:
             begun = np.nan_to_num(watched[0, :, 0], nan=HOTTEST_C, posinf=HOTTEST_C, neginf=COLDEST_C)
             self._begun = np.clip(begun, COLDEST_C, HOTTEST_C)
+        times = np.require(time_s, requirements="W")  # numba compiles everything again for times that are read-only
         count(
-            time_s, np.ascontiguousarray(watched), self._code, self._above_C, constants(), SPAN_C, LEVEL,
+            times, np.ascontiguousarray(watched), self._code, self._above_C, constants(), SPAN_C, LEVEL,
             float(self.plays), self._rule_of, self._limit, self._relative, self._upper, self._hard, rates, sums, drift,
             self._begun, self._sums, self._present, self._value, self._at_s, self._since_s,
         )  # fmt: skip

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 from lark import Lark, Token
 
-from thermicon.icons.language.grammar import grammar, own_content
+from thermicon.base.files.cache_folder import sealed_content
+from thermicon.icons.language.grammar import grammar
 from thermicon.icons.model.units import UNITS
 from thermicon.icons.model.words import CLAUSES, VOCABULARY
 
@@ -71,9 +72,9 @@ def test_kept_tables_read_the_same_and_no_others_are_unpickled(tmp_path: Path, m
     assert is_read()
     for broken in (b"", whole[:-1], whole[:32] + pickle.dumps(print)):
         kept.write_bytes(broken)
-        assert own_content(kept) is None
+        assert sealed_content(kept) is None
         assert not is_read()
-        assert own_content(kept) is not None, "they are made again"
+        assert sealed_content(kept) is not None, "they are made again"
     kept.chmod(0o666)
     assert not is_read()
     (elsewhere := tmp_path / "elsewhere").write_bytes(whole)
