@@ -81,7 +81,7 @@ def _report(
         answered = reported[row]
         answered[:] = 0.0
         for d in range(decision.shape[1]):
-            delayed(arrived, 1, decision[row, d] / (every * dt), decided)
+            delayed(arrived, np.int64(1), decision[row, d] / (every * dt), decided)
             for k in range(times):
                 answered[k] += decided[k] / decision.shape[1]
         answered[times - 1] = probability[row]

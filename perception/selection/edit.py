@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,8 +24,9 @@ from ..identification.carry_over import prepare_task
 from ..identification.population import memory_dprime, run_end_s
 from ..identification.task import USUAL, Task
 from ..observer.people import People
+from ..ranking.collected import collect_batches
 from ..ranking.ranking import Ranking
-from .appraise import appraise, population_response
+from .appraise import population_response
 from .candidate_edits import CandidateEdit, Rejections, Screening, offers, worse
 from .pool import POOL_HZ, Pool
 
@@ -158,10 +159,10 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
         end_s = max(kept.end_s, run_end_s([float(kept.durations_s[one.place]) + one.added_s], POOL_HZ))
         parted, harmed = _with_people(ranking, screening, one, crowd, end_s)
         if parted >= wanted and not harmed and parse(str(one.icon))[one.icon.name].statements == one.icon.statements:
-            people = ranking.crowd.but(people=min(ranking.people, MOST_RECOUNTED))
-            sets = job.icons, _edited(ranking, one)
-            old, new = (appraise(each, job.rig, crowd=people, task=job.task).felt_and_named for each in sets)
-            gain = new - old
+            # In batches, as the set itself was ranked: of many icons and people at once there is no room.
+            few = replace(job, icons=tuple(_edited(ranking, one)), end_s=end_s, people=min(job.people, MOST_RECOUNTED))
+            new = collect_batches(few, 1, lambda: None).felt_and_named
+            gain = float(new.mean() - ranking.felt.felt_and_named[: few.people].mean())
             if gain <= ROUNDING:
                 return NoEdit(f"separating them changes felt and named of the set by {100 * gain:+.1f} points only")
             recounted = _recounted(ranking, one, crowd, end_s)
@@ -188,8 +189,12 @@ def _with_people(
     job, before, nominal = ranking.job, ranking.d_prime, ranking.model.nominal
 
     def medians(icons: Sequence[Icon], task: Task) -> Array:
-        felt, _ = population_response(icons, job.rig, crowd, job.tracking, end_s=end_s, observer=nominal)
-        return np.asarray(np.median(memory_dprime(felt, job.forms[0], crowd.memory, nominal, task), axis=0))
+        batches, found = replace(job, icons=tuple(icons), end_s=end_s), []
+        for number in range(batches.batches):
+            some = crowd.part(*batches.span(number))
+            felt, _ = population_response(icons, job.rig, some, job.tracking, end_s=end_s, observer=nominal)
+            found.append(memory_dprime(felt, job.forms[0], some.memory, nominal, task))
+        return np.asarray(np.median(np.concatenate(found), axis=0))
 
     i, j = screening.pair
     if job.task.gap_s is None:
