@@ -25,7 +25,7 @@ from python_names import python_index, python_pages
 from rig_stack import rig_stack
 from staging import ROOT, Staging
 
-from thermicon.perception.ranking.batches import code_digest
+from thermicon.perception.kernels.cluster import code_digest
 
 
 def build(folder: Path, *, execute: bool) -> int:

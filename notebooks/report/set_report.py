@@ -105,13 +105,13 @@ def report_of(
         first(SetReport(ranking, warnings=warnings))
     # One edit takes as long as the draws, mostly on one core; more of them wait for the draws.
     cores = workers if isinstance(workers, int) else None
-    edited = beside(lambda: cheapest_edits(without, edits), cores if edits == "worst" else 1)
+    edited = beside(lambda: cheapest_edits(without, edits, workers), cores if edits == "worst" else 1)
     choice = None
     with progress_bar("intervals" if choosing is None else "choosing") as progress:
         if choosing is not None:
             choice = choose(ranking, choosing, goal=goal, parameters=draws, progress=progress)
         elif draws:
-            ranking = with_intervals(ranking, draws, step_counter(progress, draws))
+            ranking = with_intervals(ranking, draws, step_counter(progress, draws), workers)
     reached = None if goal is None else judge_goal(goal, ranking, choice)
     found, ways, after = edited(), tuple[Way, ...](), None
     if reached is not None and not reached.met:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from thermicon.base.files.records import RecordTable
 from thermicon.base.numbers.arrays import Array
 
+from ..kernels.cluster import on_cluster
 from ..kernels.parallel import in_order
 from ..observer.channels import FORM, MEMORY_FORMS, MemoryChoice, MemoryForm, Variable, forms_in
 from ..observer.constants import name_of
@@ -234,11 +235,13 @@ def laboratory_draws(
     task: Task = USUAL,
     resampled: bool = False,
     step: Callable[[], None] | None = None,
+    cluster: tuple[str, str] | None = None,
 ) -> LaboratoryDraws:
     """Predictions by `draws` draws, evenly spaced; the same arguments give the same numbers.
 
     `played` says what the receptors of the persons go through in a draw, by its number. Every draw has its own people
-    with the same seed, and invites a random sample of them (`resampled`), or all of them once.
+    with the same seed, and invites a random sample of them (`resampled`), or all of them once. `cluster` has the
+    address of a scheduler and a key, as `on_cluster`.
     """
     laboratories, count = DrawnLaboratories.of(model, memory, draws, seed), len(persons)
     invited = laboratories.invited(count) if resampled else np.tile(np.arange(count), (draws, 1))
@@ -248,12 +251,13 @@ def laboratory_draws(
         laboratory = laboratories.at(place, count)
         return scored(played(place), laboratory, apart_by, pairs[place], seed, task, invited[place])
 
-    found = []
-    for scores in in_order(one, list(range(draws))):
-        found.append(scores)
+    computed = on_cluster(one, draws, *cluster) if cluster else enumerate(in_order(one, list(range(draws))))
+    found = dict[int, tuple[Array, ...]]()
+    for place, scores in computed:
+        found[place] = scores
         if step is not None:
             step()
-    each = (np.stack(scores) for scores in zip(*found, strict=True))
+    each = (np.stack(scores) for scores in zip(*map(found.__getitem__, range(draws)), strict=True))
     acting = TakingPart(partial(_acting, laboratories, played(0), pairs[0], min(count, FEW), seed, task))
     return LaboratoryDraws(laboratories.names, laboratories.values, acting, *each)
 

@@ -148,11 +148,13 @@ def new_laboratory(
     seed: int = 0,
     task: Task = USUAL,
     step: Callable[[], None] | None = None,
+    cluster: tuple[str, str] | None = None,
 ) -> NewLaboratory:
     """Intervals about `predicted`, from `draws` sets of constants, evenly spaced; `step` is called after each.
 
-    The first few people of the crowd feel the icons, at every EVERY-th instant; the rest is as in `rank`. Raises
-    `ValueError` for fewer than two draws, which have no interval, and for an observer without draws.
+    The first few people of the crowd feel the icons, at every EVERY-th instant; the rest is as in `rank`, and `cluster`
+    as in `laboratory_draws`. Raises `ValueError` for fewer than two draws, which have no interval, and for an observer
+    without draws.
     """
     if draws < 2:
         raise ValueError(f"an interval needs at least two draws of the constants, not {draws}")
@@ -164,8 +166,9 @@ def new_laboratory(
         RATE_HZ / (EVERY if count <= MANY else 2 * EVERY), tracking,
     )  # fmt: skip
     each = laboratory_draws(
-        lambda _: few, persons, memory, own, draws=draws, seed=seed, task=task, resampled=True, step=step
-    )
+        lambda _: few, persons, memory, own, draws=draws, seed=seed, task=task, resampled=True, step=step,
+        cluster=cluster,
+    )  # fmt: skip
     # Means over all the people of the nominal observer: their sample belongs to the draw.
     shares, everybody, none = own.form_shares(memory), np.arange(len(persons)), np.zeros((count, count))
     forms = list(shares)

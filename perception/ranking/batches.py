@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
+from hashlib import sha256
 
 import numpy as np
 
 from thermicon.base.numbers.arrays import Array, own_arrays
 from thermicon.base.numbers.cores import cores
-from thermicon.base.numbers.program import DRIVES
-from thermicon.base.numbers.program import code_digest as digest_of
 from thermicon.circuit import Rig
 from thermicon.icons import Icon
 
@@ -28,6 +27,7 @@ from ..identification.population import (
     respond,
 )
 from ..identification.task import USUAL, Task
+from ..kernels.cluster import code_digest
 from ..kernels.parallel import in_order
 from ..observer.channels import MemoryChoice, MemoryForm
 from ..observer.observer import Observer
@@ -118,6 +118,15 @@ class Job:
     def span(self, number: int) -> tuple[int, int]:
         """First person of a batch, and the one after its last."""
         return number * self.at_once, min(self.people, (number + 1) * self.at_once)
+
+    @property
+    def key(self) -> str:
+        """Hash of all that decides what the batches are, and of the code."""
+        model = self.observer.digest if self.observer else None
+        how = self.end_s, self.people, self.seed, self.trials, self.tracking, self.memory, self.shares, self.task, model
+        return sha256(
+            "\0".join([code_digest(), self.rig.document, repr(how), *map(str, self.icons)]).encode()
+        ).hexdigest()
 
     @property
     def forms(self) -> tuple[MemoryForm, ...]:
@@ -249,8 +258,3 @@ def felt_by_people(job: Job, first: int, step: Callable[[], None]) -> Iterator[F
         if number in (-(-first // job.at_once), job.batches):
             detected, cold, pairs = (np.concatenate(values) for values in zip(*held, strict=True))
             yield FeltResult(pooled_detection(detected, cold, reports, report_step(DT_S)), detected, pairs)
-
-
-def code_digest() -> str:
-    """Hash of the version and of all code that computes a batch: workers of another version are refused."""
-    return digest_of((*DRIVES, "thermicon.perception"))

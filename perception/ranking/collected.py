@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -10,11 +11,11 @@ from thermicon.base.numbers.cores import cores
 
 from ..identification.confusion import normalised, sampling_error
 from ..identification.population import form_samples
+from ..kernels.cluster import on_cluster
 from ..kernels.parallel import in_order
 from ..sensation.detection import pooled as pooled_detection
 from ..sensation.detection import report_step
 from .batches import DT_S, BatchResult, Job, PooledResult, run
-from .cluster import on_cluster
 
 
 def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None]) -> PooledResult:
@@ -26,10 +27,10 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
     parts, correct = dict[int, BatchResult](), dict[int, Array]()
     blur = 0.0
     if isinstance(workers, str):
-        each = on_cluster(job, workers)
+        each = on_cluster(partial(run, job), job.batches, workers, job.key)
     else:
         # At most two batches per thread are in memory.
-        each = enumerate(in_order(lambda number: run(job, number), range(job.batches), workers or cores()))
+        each = enumerate(in_order(partial(run, job), range(job.batches), workers or cores()))
     for number, found in each:
         blur = max(blur, _sampling_error(job, found.confusion.swapaxes(0, 1)))
         correct[number] = np.diagonal(found.confusion, axis1=2, axis2=3).swapaxes(0, 1).copy()

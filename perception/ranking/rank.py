@@ -123,7 +123,7 @@ def rank(
         carry_over=left,
     )
     report()
-    return with_intervals(ranking, draws, report) if draws else ranking
+    return with_intervals(ranking, draws, report, workers) if draws else ranking
 
 
 def digests_of(icons: IconSet, rig: Rig) -> dict[str, str]:
@@ -132,15 +132,22 @@ def digests_of(icons: IconSet, rig: Rig) -> dict[str, str]:
     return {name: hashlib.sha256(text.encode("utf-8")).hexdigest() for name, text in held.items()}
 
 
-def with_intervals(ranking: Ranking, draws: int, step: Callable[[], None] | None = None) -> Ranking:
-    """A ranking with what a new laboratory will find, from draws of the posterior; `step` is called after each."""
+def with_intervals(
+    ranking: Ranking, draws: int, step: Callable[[], None] | None = None, workers: int | str | None = None
+) -> Ranking:
+    """A ranking with what a new laboratory will find, from draws of the posterior; `step` is called after each.
+
+    They are computed on all cores, or on the cluster whose address `workers` is.
+    """
     job, felt, model = ranking.job, ranking.felt, ranking.model
     onsets = felt.detection.onset_s
     scores, confused = (ranking.proportion_correct, ranking.information_bits), 0.5 * (felt.pooled + felt.pooled.T)
     whole = Nominal(*scores, felt.detected, felt.middle, onsets, confused, felt.each_felt_and_named.mean(axis=0))
     crowd = model.people(job.people, job.seed)
+    cluster = (workers, f"{job.key}-{draws}") if isinstance(workers, str) else None
     found = new_laboratory(
         job.icons, job.rig, job.end_s, crowd, whole, job.memory,
         tracking=job.tracking, model=model, draws=draws, seed=job.seed, task=job.task, step=step,
+        cluster=cluster,
     )  # fmt: skip
     return replace(ranking, new_laboratory=found)

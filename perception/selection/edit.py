@@ -23,6 +23,7 @@ from ..criteria import DISTINGUISHABLE_DPRIME
 from ..identification.carry_over import prepare_task
 from ..identification.population import memory_dprime, run_end_s
 from ..identification.task import USUAL, Task
+from ..kernels.cluster import on_cluster
 from ..observer.people import People
 from ..ranking.collected import collect_batches
 from ..ranking.ranking import Ranking
@@ -125,13 +126,26 @@ def cheapest_edit(ranking: Ranking, a: str, b: str, *, wanted: float = DISTINGUI
     return _searched(ranking, (i, j), wanted)
 
 
-def cheapest_edits(ranking: Ranking, which: str = "worst") -> dict[tuple[str, str], Edit | NoEdit]:
-    """An edit, by names, for the `worst` pair, for `all` that are not distinguishable, or for `none`."""
+def cheapest_edits(
+    ranking: Ranking, which: str = "worst", workers: int | str | None = None
+) -> dict[tuple[str, str], Edit | NoEdit]:
+    """An edit, by names, for the `worst` pair, for `all` that are not distinguishable, or for `none`.
+
+    Each is sought on a worker of its own where `workers` is the address of a cluster.
+    """
     if which not in EDITS:
         raise ValueError(f"edits are of {', '.join(EDITS)}, not {which!r}")
     near = [(p.a, p.b) for p in ranking.pairs if which == "all" and p.d_prime < DISTINGUISHABLE_DPRIME]
     worst = [] if ranking.worst_pair is None or which == "none" else [ranking.worst_pair]
-    return {pair: cheapest_edit(ranking, *pair) for pair in dict.fromkeys([*near, *worst])}
+    pairs = list(dict.fromkeys([*near, *worst]))
+
+    def edit(number: int) -> Edit | NoEdit:
+        return cheapest_edit(ranking, *pairs[number])
+
+    if not isinstance(workers, str):
+        return {pair: edit(number) for number, pair in enumerate(pairs)}
+    found = dict(on_cluster(edit, len(pairs), workers, f"{ranking.job.key}-{which}"))
+    return {pair: found[number] for number, pair in enumerate(pairs)}
 
 
 def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | NoEdit:

@@ -1,19 +1,22 @@
-"""Batches of a ranking on a dask.distributed cluster.
+"""Parts of a long computation on a dask.distributed cluster.
 
-Batches of a worker that dies are computed again by others; the result does not depend on which worker computed it.
+Parts of a worker that dies are computed again by others; the result does not depend on which worker computed it.
 """
 
 import logging
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib import import_module
-from typing import Any, cast
+from typing import Any, TypeVar
 
+from thermicon.base.numbers.program import DRIVES
+from thermicon.base.numbers.program import code_digest as digest_of
 from thermicon.base.words.installing import install
 
-from .batches import BatchResult, Job, code_digest, run
+from .kept_parts import KeptParts
 
+Part = TypeVar("Part")
 PATIENCE_S = 5.0
 """How long to wait for a scheduler to answer, and for a first worker."""
 RETRIES = 3
@@ -24,22 +27,32 @@ class ClusterError(RuntimeError):
     """A cluster cannot be used; the text states why and what to change."""
 
 
-def on_cluster(job: Job, address: str) -> Iterator[tuple[int, BatchResult]]:
-    """Compute all batches of a job on the cluster whose scheduler has this address, such as `tcp://10.0.0.5:8786`.
+def on_cluster(work: Callable[[int], Part], count: int, address: str, key: str) -> Iterator[tuple[int, Part]]:
+    """Results of `work` for the numbers below `count`, on the cluster with the scheduler at `tcp://10.0.0.5:8786`.
 
-    Batches are yielded as they finish. Raises `ClusterError` where nothing answers, there is no worker, or a worker
-    has other code or fails.
+    They are yielded as they are ready; what a client that died had received under the same key, which names work and
+    code, is not computed again. Raises `ClusterError` where nothing answers, there is no worker, or a worker has
+    other code or fails.
     """
+    kept = KeptParts.of(key)
+    for number in (known := kept.numbers(count)):
+        yield number, kept.read(number)
     with _client(address) as client:
-        tasks = {client.submit(_run, job, number, pure=False, retries=RETRIES): number for number in range(job.batches)}
+        # One copy for each worker: what a part needs may be larger than what it gives.
+        (everywhere,) = client.scatter([work], broadcast=True, hash=False)
+        left = (number for number in range(count) if number not in known)
+        tasks = {client.submit(_run, everywhere, number, pure=False, retries=RETRIES): number for number in left}
         try:
             for task in import_module("distributed").as_completed(list(tasks), loop=client.loop):
                 number = tasks.pop(task)
-                yield number, _result(task, address)
+                found = _result(task, address)
+                kept.write(number, found)
+                yield number, found
                 task.release()
         except BaseException:
             client.cancel(list(tasks))
             raise
+    kept.forget(count)
 
 
 @contextmanager
@@ -84,15 +97,20 @@ def _quiet() -> Iterator[None]:
             logger.setLevel(level)
 
 
-def _run(job: Job, number: int) -> tuple[str, BatchResult]:
-    """Runs on a worker: the hash of its code, and the batch."""
+def code_digest() -> str:
+    """Hash of the version and of all code that computes a part: workers of another version are refused."""
+    return digest_of((*DRIVES, "thermicon.perception"))
+
+
+def _run(work: Callable[[int], Any], number: int) -> tuple[str, Any]:
+    """Runs on a worker: the hash of its code, and the part."""
     from thermicon.base.numbers.cores import at_most, quiet_blas
 
     with at_most(1), quiet_blas():
-        return code_digest(), run(job, number)
+        return code_digest(), work(number)
 
 
-def _result(task: Any, address: str) -> BatchResult:
+def _result(task: Any, address: str) -> Any:
     try:
         code, result = task.result()
     except Exception as error:
@@ -102,4 +120,4 @@ def _result(task: Any, address: str) -> BatchResult:
         ) from error
     if code != code_digest():
         raise ClusterError(f"a worker of the cluster at {address} has another version of thermicon: install the same")
-    return cast(BatchResult, result)
+    return result

@@ -9,6 +9,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,8 +17,10 @@ from tests.builders import free_port
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
 from thermicon.perception import rank
-from thermicon.perception.ranking import batches, cluster
-from thermicon.perception.ranking.cluster import ClusterError, on_cluster
+from thermicon.perception.kernels import cluster, kept_parts
+from thermicon.perception.kernels.cluster import ClusterError, on_cluster
+from thermicon.perception.kernels.kept_parts import KeptParts
+from thermicon.perception.selection.edit import cheapest_edits
 
 ICONS, RIG = load_library("six-icons"), Rig.load("thenar")
 
@@ -64,9 +67,8 @@ def test_an_address_that_is_none(address: str) -> None:
 
 def test_without_the_package_the_cure_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    asked = batches.Job(tuple(ICONS), RIG, 18.0, 2, 0, 48, None, "episodes", (("episodes", 1.0),))
     with pytest.raises(ClusterError, match=r"needs distributed, which is not installed: .*pip install .*distributed"):
-        list(on_cluster(asked, "tcp://127.0.0.1:1"))
+        list(on_cluster(abs, 2, "tcp://127.0.0.1:1", "key"))
 
 
 @pytest.mark.slow
@@ -106,10 +108,87 @@ def test_a_worker_is_killed_and_the_bytes_are_those_of_one_machine(
 def test_what_a_worker_with_other_code_computed_is_refused() -> None:
     from types import SimpleNamespace
 
-    own, other = (SimpleNamespace(result=lambda code=code: (code, "scores")) for code in (batches.code_digest(), "x"))
+    own, other = (SimpleNamespace(result=lambda code=code: (code, "scores")) for code in (cluster.code_digest(), "x"))
     assert cluster._result(own, "tcp://a") == "scores"
     with pytest.raises(ClusterError, match="tcp://a has another version of thermicon"):
         cluster._result(other, "tcp://a")
+
+
+KILLED = """
+import os, signal, sys
+from thermicon.circuit import Rig
+from thermicon.icons import load_library
+from thermicon.perception import rank
+from thermicon.perception.kernels import cluster
+cluster.PATIENCE_S = 60.0
+def after_three(done, of):
+    if done == 3:  # the first step is what comes before the parts
+        os.kill(os.getpid(), signal.SIGKILL)
+icons, rig = load_library("six-icons"), Rig.load("thenar")
+rank(icons, rig, people=1000, parameters=0, workers=sys.argv[1], progress=after_three)
+"""
+
+
+@pytest.mark.slow
+def test_who_dies_goes_on_from_the_parts_that_were_done(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster, "PATIENCE_S", 60.0)
+    monkeypatch.setenv("THERMICON_CACHE", str(tmp_path / "cache"))
+    known = rank(ICONS, RIG, people=1000, parameters=4)
+    sent = list[int]()
+    from distributed import Client
+
+    def submit(client: Client, work: object, *given: Any, _submit: Any = Client.submit, **how: Any) -> Any:
+        sent.append(given[1])
+        return _submit(client, work, *given, **how)
+
+    with scheduler(tmp_path) as address:
+        only = worker(address, tmp_path)
+        try:
+            died = subprocess.run([sys.executable, "-c", KILLED, address], timeout=300, check=False)
+            assert died.returncode == -signal.SIGKILL
+            done = {int(file.name.rpartition("-")[2]) for file in (tmp_path / "cache" / "parts").iterdir()}
+            monkeypatch.setattr(Client, "submit", submit)
+            far = rank(ICONS, RIG, people=1000, parameters=4, workers=address)
+            edits = cheapest_edits(far, "all", address)
+        finally:
+            only.kill()
+            only.wait(60)
+    assert len(done) >= 2
+    batches = [*range(known.job.batches)]
+    assert sent == [*(number for number in batches if number not in done), *range(4), *range(len(edits))]
+    assert far.to_json() == known.to_json(), "batches and intervals"
+    assert repr(edits) == repr(cheapest_edits(known, "all"))
+    assert not list((tmp_path / "cache" / "parts").iterdir())
+
+
+def test_a_part_counts_only_as_this_user_wrote_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("THERMICON_CACHE", str(tmp_path))
+    kept = KeptParts.of("this")
+    for number in (0, 2, 3):
+        kept.write(number, {"part": number})
+    other = KeptParts.of("other")
+    assert (kept.numbers(5), kept.read(2), other.numbers(5)) == ([0, 2, 3], {"part": 2}, [])
+    file = tmp_path / "parts" / "this-2"
+    file.write_bytes(file.read_bytes()[:-1] + b"x")
+    (tmp_path / "parts" / "this-3").replace(tmp_path / "parts" / "this-4")
+    assert kept.numbers(5) == [0]
+    monkeypatch.setattr(kept_parts, "MOST", 1)
+    other.write(0, "no room")
+    kept.forget(5)
+    assert not list((tmp_path / "parts").iterdir())
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="owners and modes are those of POSIX")
+def test_where_nothing_can_be_kept_that_is_said_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    tmp_path.chmod(0o777)
+    monkeypatch.setenv("THERMICON_CACHE", str(tmp_path / "open" / "to all"))
+    kept = KeptParts.of("this")
+    kept.write(0, 1)
+    kept.forget(1)
+    assert kept.numbers(1) == []
+    assert [record.message.partition(":")[0] for record in caplog.records] == ["nothing is kept for a client that dies"]
 
 
 SRUN = """#!/bin/bash
