@@ -46,6 +46,8 @@ class Steps:
 
     def _forget(self) -> None:
         self.rested, self.ended_s = False, -math.inf
+        self.began_s = math.inf
+        self.fell_K: dict[str, float] = {}
         self._held_s: float | None = None
         self._now_s, self._stood_s, self._due_s = -math.inf, 0.0, -math.inf
         self._fed_s = -math.inf
@@ -110,7 +112,7 @@ class Steps:
         try:
             next_s = self.step(float(self._clock()))
             while self.busy:
-                self._wait(next_s)
+                self.wait(next_s)
                 next_s = self.step(float(self._clock()))
         except BaseException as problem:
             if self.busy:  # an interrupt while it waited
@@ -121,7 +123,7 @@ class Steps:
             self._fail(stopped)
             raise stopped
 
-    def _wait(self, until_s: float) -> None:
+    def wait(self, until_s: float) -> None:
         """Wait until a time in s, or until the sensors have answered; a clock that stands still meanwhile stops."""
         look, now_s = self._look, float(self._clock())
         if look is not None and until_s > now_s and look.done.wait(until_s - now_s):

@@ -1,0 +1,1 @@
+"""thermicon.circuit.live: exported icons played on a device that measures, guarded and logged."""

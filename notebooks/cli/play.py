@@ -1,0 +1,117 @@
+"""``thermicon play``: icons played on a device under guard, with logs."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from ..loading import DEFAULT_RIG
+from ..messages import REFUSED, STOPPED, MissingArgument, note, progress_bar, usage
+from ..report.gate_words import CAUTION
+from ..report.play_report import check_report, play_report
+from ..report.terminal import show
+from .export import LONGEST_PAUSE_S, refused
+from .options import FileName, RigOptions, flag, opt, out, read_set
+from .stop_key import is_watched, stop_key
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Export
+
+    from ..messages import Progress
+
+
+def play_command(
+    file: FileName,
+    rig: RigOptions,
+    icon: Annotated[list[str] | None, opt("NAME", "Only this icon; may be given several times.")] = None,
+    order: Annotated[
+        Path | None, out("FILE", "Play in the order of this file, which has one name per line.", "--order")
+    ] = None,
+    device: Annotated[Literal["simulated"], typer.Option(help="What plays.")] = "simulated",
+    folder: Annotated[
+        Path | None, out("DIR", "A new folder for log, prediction and settings of each play.", "-o", "--output")
+    ] = None,
+    pause: Annotated[
+        float | None, opt("S", "Seconds between plays.  [default: 10, or more where needed]", 0.0, LONGEST_PAUSE_S)
+    ] = None,
+    check: Annotated[bool, flag("--check", "Only prepare: how each demand is met; then off again.")] = False,
+    stated: Annotated[
+        list[str] | None,
+        opt("TEXT", "Who provides what the device does not hold: 'DEMAND: WHAT, WHO'; several times."),
+    ] = None,
+    amber: Annotated[bool, flag("--amber", "Play what the gate judges amber; red is never played.")] = False,
+) -> None:
+    """Play icons on a temperature controller: exported, judged, guarded and logged. FILE may be an exported folder.
+
+    The device must switch off when its host is silent, and its polarity is tested, before it rests and plays. Space,
+    Esc or Ctrl-C stop at once; the exit code is then 4, and 3 where nothing may be played. On a terminal the simulated
+    controller plays in real time, elsewhere at once. Written from documents: no device was ever driven.
+    """
+    if folder is None and not check:
+        raise MissingArgument("option '-o' / '--output'")
+    if icon and order is not None:
+        raise usage("names the icons itself; leave out --icon", "--order")
+    if check and (folder is not None or order is not None):
+        raise usage("plays nothing; leave out -o and --order", "--check")
+    from thermicon.circuit.live.play_live import USUAL_PAUSE_S, SimulatedTime, check_play_folder, play_ready
+    from thermicon.circuit.live.ready import ReadySet
+    from thermicon.circuit.play.watch import Refused
+    from thermicon.circuit.safety.playmap import UnjudgedError
+
+    if folder is not None:
+        check_play_folder(folder)
+    try:
+        with progress_bar("simulating", "judging all together") as progress:
+            made, names = exported(file, rig, icon, order, pause, progress)
+        if refused(made):
+            note(CAUTION)
+            raise Refused("nothing was put out")
+        ready = ReadySet.of(made)
+        if ready.amber and not amber:
+            raise Refused(f"the gate says amber: {ready.amber[0]}; --amber plays it")
+        now, slow = SimulatedTime(), is_watched()
+        clock, sleep = (time.monotonic, time.sleep) if slow else (now, now.sleep)
+        with stop_key() as pressed:
+            result = play_ready(
+                ready, names, clock, sleep, USUAL_PAUSE_S if pause is None else pause, stated or [], folder,
+                why_stop=pressed, tell=(lambda text: note(f"{text} …")) if slow else lambda text: None, checks_only=check,
+            )  # fmt: skip
+    except (Refused, UnjudgedError) as problem:
+        note(f"refused: {problem}", always=True)
+        raise typer.Exit(REFUSED) from None
+    if check:
+        show(check_report(result))
+    else:
+        show(play_report(result, {name: drive.trace for name, drive in ready.drives.items()}))
+    note("take the hand off: without power the display drifts by itself")
+    if result.stopped:
+        note(f"stopped: {result.stopped}; the output is off", always=True)
+        raise typer.Exit(STOPPED)
+
+
+def exported(
+    file: str, asked: RigOptions, icon: list[str] | None, order: Path | None, pause_s: float | None,
+    progress: Progress | None,
+) -> tuple[Export, list[str]]:  # fmt: skip
+    """The export of a set, or of a folder that was exported before, and the names to play in order."""
+    from thermicon.circuit import Device
+    from thermicon.circuit.live.ready import CONTROLLER, exported_before, judged
+    from thermicon.circuit.safety.session_plan import read_order
+    from thermicon.icons import IconSet
+
+    if Path(file).is_dir():
+        made = exported_before(Path(file), asked.load() if asked.given else None, pause_s, progress)
+        icons = IconSet.of([each.delivery.icon for each in made.prepared])
+    else:
+        icons = read_set([file])
+    names = icon or [each.name for each in icons] if order is None else list(read_order(order, icons))
+    chosen = [icons[name] for name in dict.fromkeys(names)]
+    if Path(file).is_dir():
+        return made, names
+    where = asked.load(icons, file)
+    if asked.rig is None and where.name == DEFAULT_RIG:
+        note(f"on the {where.name} rig; --rig names another")
+    return judged(chosen, where, Device.load(CONTROLLER), pause_s, progress), names

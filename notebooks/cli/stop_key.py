@@ -1,0 +1,51 @@
+"""The keys that stop a play: Space, Esc, and Ctrl-C by its interrupt."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+KEYS = {" ": "Space", "\x1b": "Esc", "\x03": "Ctrl-C"}
+
+
+def is_watched() -> bool:
+    """Whether a person sits at the keyboard."""
+    return sys.stdin is not None and sys.stdin.isatty()
+
+
+@contextmanager
+def stop_key() -> Iterator[Callable[[], str]]:
+    """A function that says which key stops, empty while none does; nothing is shown of what is typed meanwhile.
+
+    A read never waits. Without a keyboard it is empty always.
+    """
+    if not is_watched():
+        yield str
+        return
+    if sys.platform == "win32":
+        import msvcrt
+
+        yield lambda: _meant(msvcrt.getwch() if msvcrt.kbhit() else "")
+        return
+    import os
+    import select
+    import termios
+    import tty
+
+    keyboard = sys.stdin.fileno()
+    before = termios.tcgetattr(keyboard)
+
+    def pressed() -> str:
+        ready = select.select([keyboard], [], [], 0.0)[0]
+        return _meant(os.read(keyboard, 64).decode("utf-8", "replace") if ready else "")
+
+    try:
+        tty.setcbreak(keyboard)
+        yield pressed
+    finally:
+        termios.tcsetattr(keyboard, termios.TCSADRAIN, before)
+
+
+def _meant(typed: str) -> str:
+    return next((f"{KEYS[letter]} was pressed" for letter in typed if letter in KEYS), "")
