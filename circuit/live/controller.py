@@ -129,6 +129,8 @@ class SimulatedController:
     def status(self) -> Mapping[str, object]:
         """Return what it is set to, by the names of demands."""
         own = self._settings
+        with self._lock:
+            self._go_on()
         return {
             "identity": f"simulated controller on the circuit of rig {self._rig.name}",
             "stopped": self._stopped,

@@ -16,7 +16,7 @@ from .ready import ReadyDrive
 TICK_S = 0.01
 OFF_BEFORE_S = 5.0
 """Logged before anything is put out: a display without power is a steady start that a fit can model."""
-SILENT_S, SILENCE_COUNTS_S = 1.3, 1.2
+SILENT_S = 1.3
 """Of silence the device must have switched off by itself within the second."""
 
 
@@ -66,10 +66,11 @@ class LivePlayer:
         self._wait(SILENT_S)
         stopped = str(self.line.status().get("stopped") or "")
         if "silent" not in stopped:
-            self.line.off()
             raise Refused(
-                f"the device did not switch off by itself after {SILENT_S:g} s of silence: set its watchdog to "
-                f"{SILENCE_COUNTS_S:g} s or less"
+                f"the device switched off by itself: {stopped}"
+                if stopped
+                else f"the device did not switch off by itself after {SILENT_S:g} s of silence: set its watchdog to a "
+                f"second"
             )
         self.line.open()
         self.proofs.silent_s = SILENT_S
@@ -85,7 +86,7 @@ class LivePlayer:
         try:
             self.prove(rest_C, rests=False)
         except (Stopped, KeyboardInterrupt) as problem:
-            return str(problem) or "Ctrl-C"
+            return str(problem) or "Ctrl-C"  # what interrupts has no text
         finally:
             self.off()
         return ""
@@ -150,9 +151,9 @@ def play_in_order(
 
     Refused where nothing may be played; the output is off in any case.
     """
-    measured: list[MeasuredPlay] = []
+    why, refused = "", None
     for number, drive in enumerate(drives, 1):
-        why, refused, follows = "", None, False
+        follows = False
         player.log.open(drive.name)
         try:
             if number == 1:
@@ -166,11 +167,10 @@ def play_in_order(
         finally:
             if not follows:
                 player.off()
-        measured.append(
-            player.log.close(drive, player.guard.began_s, {**settings(), "stopped": why or str(refused or "")})
-        )
-        if refused is not None:
-            raise refused
-        if why:
-            return tuple(measured), why
-    return tuple(measured), ""
+        player.log.end(drive, player.guard.began_s, {**settings(), "stopped": why or str(refused or "")})
+        if not follows:
+            break
+    plays = player.log.finish()
+    if refused is not None:
+        raise refused
+    return plays, why

@@ -18,14 +18,16 @@ from thermicon.icons.files.shipped import Icons, by_name
 from ..delivery.device import Device
 from ..delivery.formats.psychopy import guard_numbers
 from ..delivery.pack import digest
-from ..play.watch import Refused
+from ..play.watch import Numbers, Refused
 from ..rig.rig import AnyRig, Rig, rig_of
+from ..safety.demands import Demands
 from .controller import ControllerSettings, SimulatedController
 from .demanded import MetDemand, met_demands, refuse_missing, statements_of
 from .live_player import LivePlayer, Proofs, play_in_order
 from .play_log import MeasuredPlay, PlayLog
 from .ready import CONTROLLER, ReadySet, judged
 
+LOOK_EVERY_S = 0.05
 SIMULATED = "a simulated controller"
 USUAL_PAUSE_S = 10.0
 """As the gap of a session; a display is then back where the prediction of a play begins, within some hundredths."""
@@ -183,7 +185,7 @@ def play_ready(
     log = PlayLog(
         folder, {"device": SIMULATED, "thermicon": this_program(), "rig_sha256": digest(ready.rig.document.encode())}
     )
-    player = LivePlayer(line, guard_numbers(ready.demands, closed_loop=True), log, clock, sleep, why_stop, tell)
+    player = LivePlayer(line, live_numbers(ready.demands), log, clock, sleep, why_stop, tell)
 
     def settings() -> dict[str, object]:
         return {
@@ -200,6 +202,12 @@ def play_ready(
     else:
         plays, why = play_in_order(player, drives, pause_s, settings)
     return LiveResult(plays, why, met, player.proofs, line.status(), ready.rig, folder)
+
+
+def live_numbers(demands: Demands) -> Numbers:
+    """What the guard keeps to: as in exported scripts, with more looks, since a device reports by itself."""
+    numbers = guard_numbers(demands, closed_loop=True)
+    return numbers._replace(look_every_s=min(numbers.look_every_s, LOOK_EVERY_S))
 
 
 def check_play_folder(folder: Path) -> None:

@@ -25,6 +25,8 @@ COLUMNS = (
 )
 FLUSHED_EVERY_S = 1.0
 DECIMALS = (4, 4, 4, 5, 4)
+Logged = tuple[LineRow, float, str]
+"""A turn, the time of this computer at which it was known, and what begins in it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,20 +53,21 @@ class MeasuredPlay:
 class PlayLog:
     """Writes the log of one play after the other into a folder; without a folder it only keeps what was measured.
 
-    While a play goes on, times count from the log's first row; when it ends, from the drive's first row.
+    While plays go on, times count from a log's first row. `finish`, which takes long, comes when the output is off: then
+    they count from the drive's first row.
     """
 
     def __init__(self, folder: Path | None, about: Mapping[str, Any]) -> None:
         self._folder, self._about = folder, dict(about)
         self._file: IO[str] | None = None
-        self._rows: list[tuple[LineRow, float, str]] = []
-        self._names: list[str] = []
-        self._mark, self._flushed_s = "", 0.0
+        self._rows: list[Logged] = []
+        self._stem, self._mark, self._flushed_s = "", "", 0.0
+        self._ended: list[tuple[str, list[Logged], ReadyDrive, float, Mapping[str, Any]]] = []
 
     def open(self, name: str) -> None:
         """Begin the log of an icon's play."""
-        self._names.append(name)
-        self._rows = []
+        times = sum(drive.name == name for _, _, drive, _, _ in self._ended) + 1
+        self._stem, self._rows = name if times == 1 else f"{name}-{times}", []
         if self._folder is not None:
             self._file = (self._folder / f"{self._stem}.log.csv").open("x", encoding="utf-8", newline="\n")
             self._file.write(",".join(COLUMNS) + "\n")
@@ -78,30 +81,40 @@ class PlayLog:
         for row in rows:
             self._rows.append((row, host_s, self._mark))
             if self._file is not None:
-                self._file.write(self._line(*self._rows[-1], self._rows[0][0].time_s))
+                self._file.write(_line(self._stem, *self._rows[-1], self._rows[0][0].time_s))
             self._mark = ""
         if self._file is not None and rows and rows[-1].time_s >= self._flushed_s + FLUSHED_EVERY_S:
             self._flushed_s = rows[-1].time_s
             self._file.flush()
 
-    def close(self, drive: ReadyDrive, began_s: float, settings: Mapping[str, Any]) -> MeasuredPlay:
-        """End the log, with the drive's events where it began, and write the prediction and what was set beside it."""
-        times = np.array([row.time_s for row, _, _ in self._rows])
+    def end(self, drive: ReadyDrive, began_s: float, settings: Mapping[str, Any]) -> None:
+        """End the log of a play whose first row was sent at a time of the device, infinity where none was."""
+        if self._file is not None:
+            self._file.close()
+        self._ended.append((self._stem, self._rows, drive, began_s, settings))
+
+    def finish(self) -> tuple[MeasuredPlay, ...]:
+        """Put events and times into each log, and write the prediction and what was set beside it."""
+        return tuple(self._finished(*ended) for ended in self._ended)
+
+    def _finished(
+        self, stem: str, rows: list[Logged], drive: ReadyDrive, began_s: float, settings: Mapping[str, Any]
+    ) -> MeasuredPlay:
+        times = np.array([row.time_s for row, _, _ in rows])
         first = int(np.searchsorted(times, began_s + 1e-9))  # the turn that began before could not know it
         has_begun = first < len(times)
         zero_s = float(times[first]) if has_begun else float(times[0]) if len(times) else 0.0
         for event in drive.events if has_begun else ():
             at = int(np.searchsorted(times, zero_s + event.time_s - 1e-6))
             if at < len(times):
-                row, host_s, said = self._rows[at]
-                self._rows[at] = row, host_s, f"{said}; {event.name}" if said else event.name
-        measured = self._measured(drive, zero_s, has_begun)
-        if self._folder is None or self._file is None:
+                row, host_s, said = rows[at]
+                rows[at] = row, host_s, f"{said}; {event.name}" if said else event.name
+        measured = _measured(rows, drive, zero_s, has_begun)
+        if self._folder is None:
             return measured
-        self._file.close()
-        names = tuple(f"{self._stem}.{end}" for end in ("log.csv", "predicted.csv", "log.json"))
+        names = tuple(f"{stem}.{end}" for end in ("log.csv", "predicted.csv", "log.json"))
         with complete_or_absent(self._folder / names[0]) as draft:
-            lines = (self._line(*each, zero_s) for each in self._rows)
+            lines = (_line(stem, *each, zero_s) for each in rows)
             draft.write_text("".join([",".join(COLUMNS) + "\n", *lines]), encoding="utf-8", newline="\n")
         write_trace(replace(drive.trace, icon=drive.name), self._folder / names[1])
         content = {**self._about, "icon": drive.name, "drive_sha256": drive.sha256, "rms_K": measured.rms_K, **settings}
@@ -109,25 +122,22 @@ class PlayLog:
             draft.write_text(json.dumps(plain(content), indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
         return replace(measured, files=names)
 
-    @property
-    def _stem(self) -> str:
-        name, times = self._names[-1], self._names.count(self._names[-1])
-        return name if times == 1 else f"{name}-{times}"
 
-    def _line(self, row: LineRow, host_s: float, said: str, zero_s: float) -> str:
-        cells = (row.set_point_C, row.loop_C, row.second_C, row.current_A, row.voltage_V)
-        shown = ["" if cell is None else f"{cell:.{digits}f}" for cell, digits in zip(cells, DECIMALS, strict=True)]
-        return ",".join([f"{row.time_s - zero_s:.4f}", f"{host_s:.4f}", self._names[-1], said, *shown]) + "\n"
+def _line(name: str, row: LineRow, host_s: float, said: str, zero_s: float) -> str:
+    cells = (row.set_point_C, row.loop_C, row.second_C, row.current_A, row.voltage_V)
+    shown = ["" if cell is None else f"{cell:.{digits}f}" for cell, digits in zip(cells, DECIMALS, strict=True)]
+    return ",".join([f"{row.time_s - zero_s:.4f}", f"{host_s:.4f}", name, said, *shown]) + "\n"
 
-    def _measured(self, drive: ReadyDrive, zero_s: float, has_begun: bool) -> MeasuredPlay:
-        """The columns as arrays, and how far the loop's sensor was from its prediction."""
-        table = np.array([[np.nan if cell is None else cell for cell in row] for row, _, _ in self._rows], dtype=float)
-        columns = dict(zip(("time_s", *COLUMNS[4:]), table.reshape(-1, 6).T, strict=True))
-        columns["time_s"] = columns["time_s"] - zero_s
-        trace, time_s = drive.trace, columns["time_s"]
-        played = (time_s >= 0.0) & (time_s <= trace.time_s[-1]) & has_begun
-        due_C = np.interp(time_s[played], trace.time_s, dict(trace.probes)[SENSORS[0]])
-        off_K = columns[COLUMNS[5]][played] - due_C
-        rms_K = float(np.sqrt(np.mean(off_K**2))) if len(off_K) else float("nan")
-        ended = bool(has_begun and len(time_s) and time_s[-1] >= drive.rows[-1][0] - 1e-6)
-        return MeasuredPlay(drive.name, columns, rms_K, ended)
+
+def _measured(rows: Sequence[Logged], drive: ReadyDrive, zero_s: float, has_begun: bool) -> MeasuredPlay:
+    """The columns as arrays, and how far the loop's sensor was from its prediction."""
+    table = np.array([[np.nan if cell is None else cell for cell in row] for row, _, _ in rows], dtype=float)
+    columns = dict(zip(("time_s", *COLUMNS[4:]), table.reshape(-1, 6).T, strict=True))
+    columns["time_s"] = columns["time_s"] - zero_s
+    trace, time_s = drive.trace, columns["time_s"]
+    played = (time_s >= 0.0) & (time_s <= trace.time_s[-1]) & has_begun
+    due_C = np.interp(time_s[played], trace.time_s, dict(trace.probes)[SENSORS[0]])
+    off_K = columns[COLUMNS[5]][played] - due_C
+    rms_K = float(np.sqrt(np.mean(off_K**2))) if len(off_K) else float("nan")
+    ended = bool(has_begun and len(time_s) and time_s[-1] >= drive.rows[-1][0] - 1e-6)
+    return MeasuredPlay(drive.name, columns, rms_K, ended)

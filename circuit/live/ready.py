@@ -41,6 +41,7 @@ class ReadyDrive:
     course_C: tuple[tuple[float, float], ...]
     events: tuple[Event, ...]
     trace: Trace
+    designed: Trace
 
     @property
     def peak_A(self) -> float:
@@ -72,6 +73,7 @@ class ReadySet:
                 tuple((k * COURSE_EVERY_S, at_C) for k, at_C in enumerate(course_C(delivery, COURSE_EVERY_S).tolist())),
                 events_in(delivery),
                 delivery.trace,
+                delivery.designed_trace,
             )
         amber = [f"{each.delivery.icon.name}: {text}" for each in made.prepared for text in each.verdict.cautions]
         is_amber = any(each.verdict.colour == "amber" for each in made.prepared)

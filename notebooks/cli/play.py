@@ -56,11 +56,13 @@ def play_command(
         raise usage("names the icons itself; leave out --icon", "--order")
     if check and (folder is not None or order is not None):
         raise usage("plays nothing; leave out -o and --order", "--check")
+    from thermicon.circuit.live.demanded import statements_of
     from thermicon.circuit.live.play_live import USUAL_PAUSE_S, SimulatedTime, check_play_folder, play_ready
     from thermicon.circuit.live.ready import ReadySet
     from thermicon.circuit.play.watch import Refused
     from thermicon.circuit.safety.playmap import UnjudgedError
 
+    statements_of(stated or [])
     if folder is not None:
         check_play_folder(folder)
     try:
@@ -77,7 +79,8 @@ def play_command(
         with stop_key() as pressed:
             result = play_ready(
                 ready, names, clock, sleep, USUAL_PAUSE_S if pause is None else pause, stated or [], folder,
-                why_stop=pressed, tell=(lambda text: note(f"{text} …")) if slow else lambda text: None, checks_only=check,
+                why_stop=pressed, tell=(lambda text: note(f"{text} …")) if slow else lambda text: None,
+                checks_only=check,
             )  # fmt: skip
     except (Refused, UnjudgedError) as problem:
         note(f"refused: {problem}", always=True)

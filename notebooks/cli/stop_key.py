@@ -16,36 +16,30 @@ def is_watched() -> bool:
 
 @contextmanager
 def stop_key() -> Iterator[Callable[[], str]]:
-    """A function that says which key stops, empty while none does; nothing is shown of what is typed meanwhile.
-
-    A read never waits. Without a keyboard it is empty always.
-    """
+    """A function that says which key stops, empty while none does; nothing is shown of what is typed meanwhile."""
     if not is_watched():
         yield str
-        return
-    if sys.platform == "win32":
+    elif sys.platform == "win32":
         import msvcrt
 
-        yield lambda: _meant(msvcrt.getwch() if msvcrt.kbhit() else "")
-        return
-    import os
-    import select
-    import termios
-    import tty
+        yield lambda: meant(msvcrt.getwch() if msvcrt.kbhit() else "")
+    else:
+        import os
+        import select
+        import termios
+        import tty
 
-    keyboard = sys.stdin.fileno()
-    before = termios.tcgetattr(keyboard)
-
-    def pressed() -> str:
-        ready = select.select([keyboard], [], [], 0.0)[0]
-        return _meant(os.read(keyboard, 64).decode("utf-8", "replace") if ready else "")
-
-    try:
-        tty.setcbreak(keyboard)
-        yield pressed
-    finally:
-        termios.tcsetattr(keyboard, termios.TCSADRAIN, before)
+        keyboard = sys.stdin.fileno()
+        before = termios.tcgetattr(keyboard)
+        try:
+            tty.setcbreak(keyboard)
+            yield lambda: meant(
+                os.read(keyboard, 64).decode("utf-8", "replace") if select.select([keyboard], [], [], 0.0)[0] else ""
+            )
+        finally:
+            termios.tcsetattr(keyboard, termios.TCSADRAIN, before)
 
 
-def _meant(typed: str) -> str:
+def meant(typed: str) -> str:
+    """Which of the keys that stop is among what was typed, in words."""
     return next((f"{KEYS[letter]} was pressed" for letter in typed if letter in KEYS), "")
