@@ -1,1 +1,1 @@
-"""thermicon.circuit.live: exported icons played on a device that measures, guarded and logged."""
+"""thermicon.circuit.live: guarded play on a device that measures."""

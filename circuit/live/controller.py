@@ -1,18 +1,18 @@
-"""A simulated temperature controller around the module of a rig, with a watchdog and a cut-off of its own."""
+"""A simulated temperature controller around the module of a rig."""
 
 from __future__ import annotations
 
 import math
 import threading
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from thermicon.base.numbers.arrays import Array
 
 from ..rig.rig import Rig
-from ..safety.demands import Demands
+from ..safety.demands import CutOff, Demands, HeldCutOff
 from ..solver.batch_inputs import Intervals, State, bank_of, run_on
 from ..solver.network import COLD, HOT, network_of
 from ..solver.steady import state_under_current
@@ -26,37 +26,27 @@ NOISE_K = 0.002
 
 @dataclass(frozen=True, slots=True)
 class ControllerSettings:
-    """The limits that a controller is set to, in s, °C and A; gains in A/K, A/(K·s) and A·s/K, and its sensor's lag."""
+    """What a controller is set to: watchdog s, cut-offs, currents A, gains A/K, A/(K·s), A·s/K, sensor's lag s."""
 
     watchdog_s: float
-    low_C: float
-    high_C: float
-    held_low_C: float
-    held_high_C: float
-    held_s: float
-    lowest_A: float
-    highest_A: float
-    kp_A_per_K: float
-    ki_A_per_Ks: float
-    kd_As_per_K: float
+    cut: CutOff
+    held: HeldCutOff | None
+    limits_A: tuple[float, float]
+    gains: tuple[float, float, float]
     lag_s: float
 
     @staticmethod
     def of(demands: Demands, peak_A: float) -> ControllerSettings:
         """What drives demand that need at most a current; one limit for both signs unless they need more."""
         assert demands.loop is not None and demands.current_limit_A is not None
-        cut, held, (low_A, high_A) = demands.cut_off_display_C, demands.held_cut_off_display_C, demands.current_limit_A
+        low_A, high_A = demands.current_limit_A
         both_A = max(min(-low_A, high_A), peak_A)
         return ControllerSettings(
             min(demands.watchdog_s, LONGEST_SILENCE_S),
-            cut.low,
-            cut.high,
-            held.low if held else cut.low,
-            held.high if held else cut.high,
-            held.longer_than_s if held else math.inf,
-            max(low_A, -both_A),
-            min(high_A, both_A),
-            *demands.loop.played,
+            replace(demands.cut_off_display_C, react_within_s=TURN_S),
+            demands.held_cut_off_display_C,
+            (max(low_A, -both_A), min(high_A, both_A)),
+            demands.loop.played,
             demands.loop.playing_sensor_lag_s,
         )
 
@@ -128,21 +118,19 @@ class SimulatedController:
 
     def status(self) -> Mapping[str, object]:
         """Return what it is set to, by the names of demands."""
-        own = self._settings
+        own, held = self._settings, self._settings.held
         with self._lock:
             self._go_on()
         return {
             "identity": f"simulated controller on the circuit of rig {self._rig.name}",
             "stopped": self._stopped,
             "watchdog_s": own.watchdog_s,
-            "cut_off_display_C": (own.low_C, own.high_C, TURN_S),
-            "held_cut_off_display_C": (own.held_low_C, own.held_high_C, own.held_s),
-            "current_limit_A": (own.lowest_A, own.highest_A),
-            "loop": (own.kp_A_per_K, own.ki_A_per_Ks, own.kd_As_per_K, own.lag_s, TURN_S),
+            "cut_off_display_C": (own.cut.low, own.cut.high, own.cut.react_within_s),
+            "held_cut_off_display_C": (held.low, held.high, held.longer_than_s) if held else None,
+            "current_limit_A": own.limits_A,
+            "loop": (*own.gains, own.lag_s, TURN_S),
             "zero_current_at_most_s": 0.0,  # no hand is on it
             "second_sensor": True,
-            "probes": {"loop": own.lag_s, "second": own.lag_s},
-            "settings": asdict(own),
         }
 
     def _put(self, goal_C: float | None, test_A: float | None) -> None:
@@ -179,9 +167,10 @@ class SimulatedController:
         self._check(self._read_C[1])
         if self._stopped:
             self._goal_C = self._test_A = None
-        module, hotter_K = self._rig.module, float(self._nodes_C[HOT]) - display_C
-        self._current_A = self._wanted_A((self._felt_C - before_C) / TURN_S)
-        volts = module.seebeck_V_per_K * hotter_K + self._current_A * module.resistance_ohm
+        module = self._rig.module
+        back_V = module.seebeck_V_per_K * (float(self._nodes_C[HOT]) - display_C)
+        self._current_A = self._wanted_A((self._felt_C - before_C) / TURN_S, back_V)
+        volts = back_V + self._current_A * module.resistance_ohm
         self._rows.append(LineRow(self._turned_s, self._goal_C, *self._read_C, self._current_A, volts))
         flow_A = np.full((1, 1), self._current_A)
         held = Intervals(np.array([0.0, TURN_S]), np.array([-1, 0]), flow_A, flow_A)
@@ -190,24 +179,29 @@ class SimulatedController:
 
     def _check(self, second_C: float) -> None:
         """The device's own stops, by its own sensor and clock."""
-        own, is_on = self._settings, self._goal_C is not None or self._test_A is not None
+        own, cut, held = self._settings, self._settings.cut, self._settings.held
+        is_on = self._goal_C is not None or self._test_A is not None
         if is_on and self._turned_s - self._fed_s > own.watchdog_s:
             self._stopped = f"the host was silent for {own.watchdog_s:g} s"
-        if not own.low_C <= second_C <= own.high_C:
-            self._stopped = f"the second sensor read {second_C:.2f} °C, outside {own.low_C:g} … {own.high_C:g} °C"
-        is_beyond = self._current_A != 0.0 and not own.held_low_C <= second_C <= own.held_high_C
-        self._beyond_s = self._beyond_s + TURN_S if is_beyond else 0.0
-        if self._beyond_s > own.held_s:
-            self._stopped = f"the second sensor was outside {own.held_low_C:g} … {own.held_high_C:g} °C for too long"
+        if not cut.low <= second_C <= cut.high:
+            self._stopped = f"its second sensor read {second_C:.2f} °C, outside {cut.low:g} … {cut.high:g} °C"
+        if held is not None:
+            is_beyond = self._current_A != 0.0 and not held.low <= second_C <= held.high
+            self._beyond_s = self._beyond_s + TURN_S if is_beyond else 0.0
+            if self._beyond_s > held.longer_than_s:
+                self._stopped = f"its second sensor was outside {held.low:g} … {held.high:g} °C for too long"
 
-    def _wanted_A(self, rate_K_per_s: float) -> float:
-        """The current of the loop or of a test, within the limits; the integral stops there."""
-        own, wanted_A, grown_A = self._settings, self._test_A or 0.0, 0.0
-        if self._goal_C is not None:
-            error_K = self._read_C[0] - self._goal_C
-            grown_A = self._integral_A + own.ki_A_per_Ks * error_K * TURN_S
-            wanted_A = own.kp_A_per_K * error_K + grown_A + own.kd_As_per_K * rate_K_per_s
-        limited_A = min(max(wanted_A, own.lowest_A), own.highest_A)
-        if limited_A == wanted_A and self._goal_C is not None:
+    def _wanted_A(self, rate_K_per_s: float, back_V: float) -> float:
+        """The current of the loop or of a test, within the limits of current and voltage; the integral stops there."""
+        kp, ki, kd = self._settings.gains
+        most_V, ohm = self._rig.driver.voltage_limit_V, self._rig.module.resistance_ohm
+        low_A = max(self._settings.limits_A[0], (-most_V - back_V) / ohm)
+        high_A = min(self._settings.limits_A[1], (most_V - back_V) / ohm)
+        if self._goal_C is None:
+            return min(max(self._test_A, low_A), high_A) if self._test_A else 0.0
+        error_K = self._read_C[0] - self._goal_C
+        grown_A = self._integral_A + ki * error_K * TURN_S
+        wanted_A = kp * error_K + grown_A + kd * rate_K_per_s
+        if low_A <= wanted_A <= high_A:
             self._integral_A = grown_A
-        return limited_A
+        return min(max(wanted_A, low_A), high_A)

@@ -1,4 +1,4 @@
-"""The demands of the gate against what a device holds, what was shown, and what a person states."""
+"""The demands of the gate beside what meets them."""
 
 from __future__ import annotations
 
@@ -24,6 +24,15 @@ LABELS = {
     "loop": "loop",
 }
 """What people call the demands of a sidecar."""
+READ_BACK = {
+    "watchdog_s": "off after {:g} s of silence",
+    "cut_off_display_C": "set to {:g} … {:g} °C, within {:g} s",
+    "held_cut_off_display_C": "set to {:g} … {:g} °C, for {:g} s",
+    "zero_current_at_most_s": "no hand for longer than {:g} s",
+    "current_limit_A": "set to {:g} … {:g} A",
+    "loop": "set to {:g} A/K, {:g} A/(K·s), {:g} A·s/K; sensor late by {:g} s, output by {:g} s",
+}
+"""What a device says that it holds."""
 BY_PLAYER = {"rest_before_first_play_s": "held by this program", "pause_at_least_s": "held by this program"}
 BY_PROOF = {"polarity_check": "the display must fall under the test's current"}
 
@@ -64,7 +73,7 @@ def met_demands(demands: Demands, status: Mapping[str, Any], stated: Mapping[str
         elif name in BY_PROOF:
             how, by = "proven", BY_PROOF[name]
         elif _holds(name, demands, status):
-            how, by = ("proven" if name == "watchdog_s" else "held"), f"the device has {_text(status[name])}"
+            how, by = ("proven" if name == "watchdog_s" else "held"), READ_BACK[name].format(*_numbers(status[name]))
         elif name in stated:
             how, by = "stated", stated[name]
         rows.append(MetDemand(LABELS[name], _words(name, demands), how, by))
@@ -83,7 +92,7 @@ def _holds(name: str, demands: Demands, status: Mapping[str, Any]) -> bool:
     held, asked = status.get(name), getattr(demands, name)
     if held is None:
         return False
-    numbers = [float(each) for each in held] if isinstance(held, list | tuple) else [float(held)]
+    numbers = _numbers(held)
     if name == "watchdog_s":
         return bool(0.0 < numbers[0] <= asked)
     if name == "zero_current_at_most_s":
@@ -97,6 +106,10 @@ def _holds(name: str, demands: Demands, status: Mapping[str, Any]) -> bool:
         return bool(inside and late and kd == asked.kd_As_per_K and status.get("second_sensor"))
     within_s = asked.act_within_s if name == "cut_off_display_C" else asked.longer_than_s
     return bool(asked.low <= numbers[0] and numbers[1] <= asked.high and numbers[2] <= within_s)
+
+
+def _numbers(held: Any) -> list[float]:
+    return [float(each) for each in held] if isinstance(held, list | tuple) else [float(held)]
 
 
 def _words(name: str, demands: Demands) -> str:
@@ -116,7 +129,3 @@ def _words(name: str, demands: Demands) -> str:
     if name == "rest_before_first_play_s":
         return f"{demands.rest_s:g} s before the first play"
     return f"{asked:g} s"
-
-
-def _text(held: Any) -> str:
-    return ", ".join(f"{each:g}" for each in held) if isinstance(held, list | tuple) else f"{held:g}"

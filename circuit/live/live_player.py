@@ -1,4 +1,4 @@
-"""Plays in order on a device that measures: prepared, rested, guarded and logged."""
+"""A guarded player of drives on a device that measures."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class LivePlayer:
 
     def play(self, drive: ReadyDrive, pause_s: float = 0.0) -> None:
         """Play a drive, after a pause at least since the last one; raises Refused or Stopped."""
-        until_s = self.guard.ended_s + max(pause_s, self.numbers.pause_s)
+        until_s = self.guard.ended_s + max(pause_s, self.numbers.pause_s) + 2.0 * NOTHING_S
         self.guard.began_s = math.inf
         while until_s - self._clock() > NOTHING_S:
             self.guard.keep()

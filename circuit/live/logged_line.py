@@ -22,7 +22,7 @@ class LoggedLine(Line, Protocol):
     """A line whose device measures the display by two sensors and reports each turn of its loop.
 
     `status` has what the device holds by names of demands, with `identity`, `stopped` (why it switched off by itself,
-    else empty), `second_sensor`, and `probes`: the lag in s of each sensor.
+    else empty) and `second_sensor`.
     """
 
     def read(self) -> float:

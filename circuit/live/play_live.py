@@ -1,4 +1,4 @@
-"""Live play in one call: icons, or an exported folder, played on a simulated controller, and what was measured."""
+"""Live play on a simulated controller in one call."""
 
 from __future__ import annotations
 
@@ -50,24 +50,11 @@ class SimulatedTime:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LiveResult:
-    """What came of live play.
+    """The result of live play.
 
-    Attributes
-    ----------
-    plays
-        What was measured of each icon, in order; none where only the device was checked.
-    stopped
-        Why it was stopped, by a person, the guard or the device; empty where everything was played.
-    demands
-        How each demand of the gate was met.
-    proofs
-        What was shown before the first play.
-    status
-        What the device says that it holds.
-    rig
-        The rig, with the device's sensors as probes.
-    folder
-        Where the logs are; None where nothing was written.
+    `plays` has what was measured of each icon in order, `stopped` why it was stopped, empty where everything was
+    played; `demands` how each demand of the gate was met, `proofs` what was shown before the first play, `status` what
+    the device says that it holds. `rig` has the device's sensors as probes; without a `folder` nothing was written.
     """
 
     plays: tuple[MeasuredPlay, ...]

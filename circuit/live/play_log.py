@@ -1,4 +1,4 @@
-"""The log of a play on the disk: a row for each turn of the device, beside the predicted trace and what was set."""
+"""The log of a play on the disk."""
 
 from __future__ import annotations
 
@@ -53,8 +53,8 @@ class MeasuredPlay:
 class PlayLog:
     """Writes the log of one play after the other into a folder; without a folder it only keeps what was measured.
 
-    While plays go on, times count from a log's first row. `finish`, which takes long, comes when the output is off: then
-    they count from the drive's first row.
+    While plays go on, times count from a log's first row. `finish` counts them from the drive's first row, which takes
+    long and therefore comes when the output is off.
     """
 
     def __init__(self, folder: Path | None, about: Mapping[str, Any]) -> None:

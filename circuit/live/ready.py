@@ -1,4 +1,4 @@
-"""Drives that are ready to be played: judged by the gate just now, also where they were exported before."""
+"""Drives that the gate has judged just now, ready to be played."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def judged(
 ) -> Export:
     """Export icons as set-points, and judge them; InputError where no controller plays them on this rig."""
     if rig.thermode is not None:
-        raise InputError(f"rig {rig.name} is a thermode, which plays profiles by itself: use export --to tcs2-serial")
+        raise InputError(f"rig {rig.name} is a thermode, which plays by itself: export in the format tcs2-serial")
     if device.driven_by != "temperatures":
         raise InputError(f"{device.name} takes no set-points; live play needs a temperature controller")
     lag_s = SENSOR_LAG_S if rig.controller is None else rig.controller.lag_s
@@ -115,7 +115,7 @@ def exported_before(
         raise InputError(f"{folder}: its drives are for several rigs or devices; export them again, as one set")
     own = rig_of(first["rig"]["document"], f"the rig of {folder}")
     if rig is not None and rig != own:
-        raise InputError(f"{folder} was exported for another rig {own.name} than {rig.name}: leave out --rig and --set")
+        raise InputError(f"{folder} was exported for another rig {own.name} than {rig.name}: give that rig, or none")
     about = first["device"]
     device = Device(**{**about, "records": tuple(Record(**record) for record in about["records"])})
     icons = [parse(each["icon"]["text"])[each["icon"]["name"]] for each in abouts.values()]

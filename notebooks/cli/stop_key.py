@@ -1,4 +1,4 @@
-"""The keys that stop a play: Space, Esc, and Ctrl-C by its interrupt."""
+"""The keys that stop a play."""
 
 from __future__ import annotations
 

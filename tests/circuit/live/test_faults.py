@@ -1,4 +1,4 @@
-"""Single faults of a device in corners of the rig, at any instant of a play: what the display and the skin do then."""
+"""Single faults of a device at any instant of a play, in corners of the rig."""
 
 from collections.abc import Callable
 
@@ -12,9 +12,10 @@ from thermicon.circuit.play.watch import Refused
 
 PREPARED_S, REST_S = 18.4, 20.0
 WITHIN_S = {
-    "silent host": 1.1, "loop open": 0.1, "second open": 0.1, "loop off": 0.6, "second off": 0.6, "swapped": 3.0,
+    "silent host": 1.1, "loop open": 0.1, "second open": 0.1, "loop off": 0.8, "second off": 0.6, "swapped": 4.0,
 }  # fmt: skip
-"""How long after a fault the output is off at the latest."""
+"""How long after a fault the output is off at the latest: a loop that is lied to moves the display until both sensors
+show it, and wires that are swapped where hardly any current flows move it slowly."""
 FROZEN_S, MOVED_K = 2.0, 0.3
 PLACES = {"skin surface": 0, "cold-receptor depth": 1, "display": 2, "hot plate": 3}
 

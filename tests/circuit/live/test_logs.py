@@ -1,4 +1,4 @@
-"""What is read from a log of live play: the prediction beside it, and the rig."""
+"""What a log of live play tells."""
 
 import json
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What a device plays beside the design: from rest, and in a first play after no power."""
+"""What a device plays beside the design."""
 
 from collections.abc import Callable
 

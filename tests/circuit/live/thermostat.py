@@ -1,4 +1,4 @@
-"""A temperature controller on the independent circuit, in simulated time and with faults: a device for live play.
+"""A faulty temperature controller on the independent circuit in simulated time.
 
 Rules: a thermistor follows its plate through glue with a lag, and has an offset and a step; a wire that breaks reads
 the end of the span; a loop turns every 10 ms and holds its current meanwhile; a watchdog counts from the last feed and
