@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+import operator
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any, NamedTuple, cast
 
 from thermicon.base.files.inputs import InputError
 from thermicon.base.words.near_words import did_you_mean
@@ -12,29 +13,60 @@ from thermicon.base.words.near_words import did_you_mean
 from ..play.watch import Refused
 from ..safety.demands import Demands, How
 
-LABELS = {
-    "watchdog_s": "watchdog",
-    "cut_off_display_C": "cut-off",
-    "held_cut_off_display_C": "second cut-off",
-    "polarity_check": "polarity",
-    "rest_before_first_play_s": "rest",
-    "pause_at_least_s": "pause",
-    "zero_current_at_most_s": "zero current",
-    "current_limit_A": "current limit",
-    "loop": "loop",
+Numbers = Sequence[float]
+
+
+class Asked(NamedTuple):
+    """A kind of demand: what people call it, how it and what a device holds are written, when that is strict enough."""
+
+    label: str
+    demand: str
+    held: str
+    is_met: Callable[[Numbers, Numbers], bool]
+
+
+def _inside(asked: Numbers, held: Numbers) -> bool:
+    return asked[0] <= held[0] and held[1] <= asked[1] and all(map(operator.le, held[2:], asked[2:]))
+
+
+def _is_loop_met(asked: Numbers, held: Numbers) -> bool:
+    least_kp, most_kp, least_ki, most_ki, asked_kd, most_delay_s, most_lag_s, *_ = asked
+    kp, ki, kd, lag_s, delay_s = held
+    gains = least_kp <= kp <= most_kp and least_ki <= ki <= most_ki and kd == asked_kd
+    return gains and lag_s <= most_lag_s and delay_s <= most_delay_s
+
+
+def _never(asked: Numbers, held: Numbers) -> bool:
+    return False
+
+
+ASKED = {
+    "watchdog_s": Asked("watchdog", "{:g} s", "off after {:g} s of silence", lambda a, h: 0.0 < h[0] <= a[0]),
+    "cut_off_display_C": Asked(
+        "cut-off", "{:g} … {:g} °C within {:g} s", "set to {:g} … {:g} °C, within {:g} s", _inside
+    ),
+    "held_cut_off_display_C": Asked(
+        "second cut-off", "{:g} … {:g} °C for {:g} s with current", "set to {:g} … {:g} °C, for {:g} s", _inside
+    ),
+    "polarity_check": Asked("polarity", "after {1:g} s off, {2:g} A cools by {4:g} K in {3:g} s", "", _never),
+    "rest_before_first_play_s": Asked("rest", "{:g} s before the first play", "", _never),
+    "pause_at_least_s": Asked("pause", "{:g} s", "", _never),
+    "zero_current_at_most_s": Asked("zero current", "{:g} s", "no hand for longer", lambda a, h: h[0] <= a[0]),
+    "current_limit_A": Asked("current limit", "{:g} … {:g} A", "set to {:g} … {:g} A", _inside),
+    "loop": Asked(
+        "loop",
+        "{:g} to {:g} A/K, {:g} to {:g} A/(K·s), second sensor",
+        "set to {:g} A/K, {:g} A/(K·s), {:g} A·s/K; sensor late by {:g} s, output by {:g} s",
+        _is_loop_met,
+    ),
 }
-"""What people call the demands of a sidecar."""
-READ_BACK = {
-    "watchdog_s": "off after {:g} s of silence",
-    "cut_off_display_C": "set to {:g} … {:g} °C, within {:g} s",
-    "held_cut_off_display_C": "set to {:g} … {:g} °C, for {:g} s",
-    "zero_current_at_most_s": "no hand for longer than {:g} s",
-    "current_limit_A": "set to {:g} … {:g} A",
-    "loop": "set to {:g} A/K, {:g} A/(K·s), {:g} A·s/K; sensor late by {:g} s, output by {:g} s",
+"""The demands of a sidecar, by name."""
+BY_PLAYER = {
+    "polarity_check": ("proven", "both sensors must fall"),
+    "rest_before_first_play_s": ("held", "kept by this program"),
+    "pause_at_least_s": ("held", "kept by this program"),
 }
-"""What a device says that it holds."""
-BY_PLAYER = {"rest_before_first_play_s": "held by this program", "pause_at_least_s": "held by this program"}
-BY_PROOF = {"polarity_check": "the display must fall under the test's current"}
+"""How demands are met whatever the device is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +81,7 @@ class MetDemand:
 
 def statements_of(texts: Sequence[str]) -> dict[str, str]:
     """Statements of people by the name of a demand; InputError for one without a demand or a name."""
-    names = {label: name for name, label in LABELS.items()}
+    names = {kind.label: name for name, kind in ASKED.items()}
     said = {}
     for text in texts:
         label, colon, rest = (part.strip() for part in text.partition(":"))
@@ -66,17 +98,18 @@ def met_demands(demands: Demands, status: Mapping[str, Any], stated: Mapping[str
     """How each demand is met by a device that says what it holds; what is proven is so once the proofs were made."""
     rows = []
     for name in demands.demanded:
-        how: How = "missing"
-        by = "the device does not hold it; state who does"
+        kind, asked = ASKED[name], _numbers(demands.rest_s if "rest" in name else getattr(demands, name))
+        held = None if status.get(name) is None else _numbers(status[name])
+        has_sensor = name != "loop" or bool(status.get("second_sensor"))
+        how, by = ("missing", "the device does not hold it; state who does")
         if name in BY_PLAYER:
-            how, by = "held", BY_PLAYER[name]
-        elif name in BY_PROOF:
-            how, by = "proven", BY_PROOF[name]
-        elif _holds(name, demands, status):
-            how, by = ("proven" if name == "watchdog_s" else "held"), READ_BACK[name].format(*_numbers(status[name]))
+            how, by = BY_PLAYER[name]
+        elif held is not None and has_sensor and kind.is_met(asked, held):
+            how, by = "proven" if name == "watchdog_s" else "held", kind.held.format(*held)
         elif name in stated:
             how, by = "stated", stated[name]
-        rows.append(MetDemand(LABELS[name], _words(name, demands), how, by))
+        demand = kind.demand.format(*asked).replace("-", "−")
+        rows.append(MetDemand(kind.label, demand, cast(How, how), by.replace(" -", " −")))
     return tuple(rows)
 
 
@@ -87,45 +120,8 @@ def refuse_missing(rows: Sequence[MetDemand]) -> None:
         raise Refused(f"nothing was put out, since nobody provides: {needs}; set the device, or state who does")
 
 
-def _holds(name: str, demands: Demands, status: Mapping[str, Any]) -> bool:
-    """Whether a device is set as strictly as is demanded."""
-    held, asked = status.get(name), getattr(demands, name)
-    if held is None:
-        return False
-    numbers = _numbers(held)
-    if name == "watchdog_s":
-        return bool(0.0 < numbers[0] <= asked)
-    if name == "zero_current_at_most_s":
-        return bool(numbers[0] <= asked)
-    if name == "current_limit_A":
-        return bool(asked[0] <= numbers[0] and numbers[1] <= asked[1])
-    if name == "loop":
-        kp, ki, kd, lag_s, delay_s = numbers
-        inside = asked.kp_A_per_K[0] <= kp <= asked.kp_A_per_K[1] and asked.ki_A_per_Ks[0] <= ki <= asked.ki_A_per_Ks[1]
-        late = lag_s <= asked.sensor_lag_at_most_s and delay_s <= asked.delay_at_most_s
-        return bool(inside and late and kd == asked.kd_As_per_K and status.get("second_sensor"))
-    within_s = asked.act_within_s if name == "cut_off_display_C" else asked.longer_than_s
-    return bool(asked.low <= numbers[0] and numbers[1] <= asked.high and numbers[2] <= within_s)
-
-
 def _numbers(held: Any) -> list[float]:
-    return [float(each) for each in held] if isinstance(held, list | tuple) else [float(held)]
-
-
-def _words(name: str, demands: Demands) -> str:
-    """A demand in a few words."""
-    asked = getattr(demands, name)
-    if name == "cut_off_display_C":
-        return f"{asked.low:g} … {asked.high:g} °C within {asked.act_within_s:g} s"
-    if name == "held_cut_off_display_C":
-        return f"{asked.low:g} … {asked.high:g} °C, no longer than {asked.longer_than_s:g} s with current"
-    if name == "polarity_check":
-        return f"{asked.test_current_A:g} A cools by {asked.display_change_at_least_K:g} K in {asked.test_s:g} s"
-    if name == "current_limit_A":
-        return f"{asked[0]:g} … {asked[1]:g} A".replace("-", "−")
-    if name == "loop":
-        kp, ki, _ = asked.played
-        return f"{kp:.3g} A/K, {ki:.3g} A/(K·s), and a second sensor for the cut-off"
-    if name == "rest_before_first_play_s":
-        return f"{demands.rest_s:g} s before the first play"
-    return f"{asked:g} s"
+    """All numbers of a demand, or of what a device holds, in order."""
+    if is_dataclass(held):
+        held = [getattr(held, each.name) for each in fields(held)]
+    return [one for each in held for one in _numbers(each)] if isinstance(held, list | tuple) else [float(held)]

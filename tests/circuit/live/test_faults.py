@@ -1,12 +1,18 @@
 """Single faults of a device at any instant of a play, in corners of the rig."""
 
+import json
+import os
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 
+from tests.circuit.delivery.independent import worlds_of
 from tests.circuit.live.conftest import EVIDENCE
 from tests.circuit.live.thermostat import FAULTS, Thermostat, played
+from thermicon.circuit.live.live_player import LivePlayer
+from thermicon.circuit.live.play_live import live_numbers
+from thermicon.circuit.live.play_log import PlayLog
 from thermicon.circuit.live.ready import ReadySet
 from thermicon.circuit.play.watch import Refused
 
@@ -82,3 +88,25 @@ def test_faults_at_any_instant(ready: Callable[[str, float], ReadySet]) -> None:
     for fault, times_s in late.items():
         print(f"{fault}: {stopped[fault]} of {len(times_s)} stopped, off after {max(times_s):.2f} s at most")
     assert sum(stopped.values()) > 0.7 * EVIDENCE
+
+
+def test_polarity_in_all_corners(ready: Callable[[str, float], ReadySet]) -> None:
+    """From no power, and from a baseline that was held until just before; a few corners unless all are asked for."""
+    every = os.environ.get("THERMICON_EVIDENCE")
+    found = ready("readme", 100.0)
+    count, number = len(worlds_of(json.loads(found.rig.document))), 0
+    for world in range(0, count, 1 if every else 16):
+        for is_swapped in (False, True):
+            device = Thermostat(found.rig, found.demands, np.random.default_rng(world), world)
+            number += 1
+            if number % 4 > 1:
+                device.send(32.0)
+                for _ in range(300):
+                    device.sleep(0.2)
+                    device.feed()
+                device.off()
+            if is_swapped:
+                device.swap()
+            player = LivePlayer(device, live_numbers(found.demands), PlayLog(None, {}), device.clock, device.sleep)
+            assert bool(player.check(32.0)) == is_swapped, f"corner {world}: {player.proofs}"
+            assert device.goal_C is None
