@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -66,8 +67,8 @@ class PlayLog:
 
     def open(self, name: str) -> None:
         """Begin the log of an icon's play."""
-        times = sum(drive.name == name for _, _, drive, _, _ in self._ended) + 1
-        self._stem, self._rows = name if times == 1 else f"{name}-{times}", []
+        used, stems = {ended[0] for ended in self._ended}, (f"{name}-{times}" for times in itertools.count(2))
+        self._stem, self._rows = next(stem for stem in itertools.chain([name], stems) if stem not in used), []
         if self._folder is not None:
             self._file = (self._folder / f"{self._stem}.log.csv").open("x", encoding="utf-8", newline="\n")
             self._file.write(",".join(COLUMNS) + "\n")

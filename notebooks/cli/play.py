@@ -14,7 +14,7 @@ from ..report.gate_words import CAUTION
 from ..report.play_report import check_report, play_report
 from ..report.terminal import show
 from .export import LONGEST_PAUSE_S, refused
-from .options import FileName, RigOptions, flag, opt, out, read_set
+from .options import FileName, RigOptions, flag, opt, out, pick, read_set
 from .stop_key import is_watched, stop_key
 
 if TYPE_CHECKING:
@@ -104,15 +104,15 @@ def exported(
     from thermicon.circuit.live.ready import CONTROLLER, exported_before, judged
     from thermicon.circuit.safety.session_plan import read_order
     from thermicon.icons import IconSet
+    from thermicon.icons.files.shipped import library_names
 
-    if Path(file).is_dir():
+    made = None
+    if Path(file).is_dir() and file not in library_names():
         made = exported_before(Path(file), asked.load() if asked.given else None, pause_s, progress)
-        icons = IconSet.of([each.delivery.icon for each in made.prepared])
-    else:
-        icons = read_set([file])
-    names = icon or [each.name for each in icons] if order is None else list(read_order(order, icons))
+    icons = read_set([file]) if made is None else IconSet.of([each.delivery.icon for each in made.prepared])
+    names = list(read_order(order, icons)) if order else icon or [each.name for each in pick(icons, None)]
     chosen = [icons[name] for name in dict.fromkeys(names)]
-    if Path(file).is_dir():
+    if made is not None:
         return made, names
     where = asked.load(icons, file)
     if asked.rig is None and where.name == DEFAULT_RIG:
