@@ -5,6 +5,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
+from itertools import chain
 from typing import Any, NamedTuple, cast
 
 from thermicon.base.files.inputs import InputError
@@ -115,7 +116,8 @@ def met_demands(demands: Demands, status: Mapping[str, Any], stated: Mapping[str
 
 def refuse_missing(rows: Sequence[MetDemand]) -> None:
     """Refuse to play where a demand is missing."""
-    if missing := [row for row in rows if row.how == "missing"]:
+    missing = [row for row in rows if row.how == "missing"]
+    if missing:
         needs = "; ".join(f"{row.label} ({row.demand})" for row in missing)
         raise Refused(f"nothing was put out, since nobody provides: {needs}; set the device, or state who does")
 
@@ -124,4 +126,4 @@ def _numbers(held: Any) -> list[float]:
     """All numbers of a demand, or of what a device holds, in order."""
     if is_dataclass(held):
         held = [getattr(held, each.name) for each in fields(held)]
-    return [one for each in held for one in _numbers(each)] if isinstance(held, list | tuple) else [float(held)]
+    return list(chain.from_iterable(map(_numbers, held))) if isinstance(held, list | tuple) else [float(held)]

@@ -132,15 +132,16 @@ class LivePlayer:
     def _wait(self, seconds: float) -> None:
         """Let time pass without a sign of life."""
         until_s = self._clock() + seconds
-        while (left_s := until_s - self._clock()) > NOTHING_S:
-            self._sleep(min(left_s, TICK_S))
+        while until_s - self._clock() > NOTHING_S:
+            self._sleep(min(until_s - self._clock(), TICK_S))
             self._tick()
 
     def _tick(self, *, stops: bool = True) -> None:
         now_s = self._clock()
         self.worst_gap_s, self._ticked_s = max(self.worst_gap_s, now_s - self._ticked_s), now_s
         self.log.take(self.line.rows(), now_s)
-        if stops and (why := self._why_stop()):
+        why = self._why_stop() if stops else ""
+        if why:
             raise Stopped(why)
 
 

@@ -160,7 +160,8 @@ def play_ready(
 ) -> LiveResult:
     """Play drives that the gate has judged on the simulated controller, or only prepare it (`checks_only`)."""
     names = list(order or ready.drives)
-    if unknown := [name for name in names if name not in ready.drives]:
+    unknown = [name for name in names if name not in ready.drives]
+    if unknown:
         raise InputError(f"{unknown[0]} is not among the icons that were exported: {', '.join(ready.drives)}")
     drives, said = [ready.drives[name] for name in names], statements_of(stated)
     peak_A = max(drive.peak_A for drive in drives)
@@ -200,7 +201,8 @@ def live_numbers(demands: Demands) -> Numbers:
 def check_play_folder(folder: Path) -> None:
     """Raise OutputError for a folder that is not new or empty, or cannot be made."""
     check_folder(folder)
-    if there := sorted(path.name for path in folder.iterdir()) if folder.exists() else []:
+    there = sorted(path.name for path in folder.iterdir()) if folder.exists() else []
+    if there:
         raise OutputError(f"{kept_text(folder, there)}; give a new or empty folder, since a log is never overwritten")
 
 

@@ -1,4 +1,4 @@
-"""Drives that the gate has judged just now, ready to be played."""
+"""Drives to be played that the gate has judged just now."""
 
 from __future__ import annotations
 
@@ -107,7 +107,8 @@ def exported_before(
     """Verify an exported folder and judge it again; InputError where it is not what would be exported now."""
     files = {path.name: path.read_bytes() for path in sorted(folder.iterdir()) if path.is_file()}
     found = verify(files)
-    if wrong := [str(each) for each in found.findings if each.kind == "wrong"]:
+    wrong = [str(each) for each in found.findings if each.kind == "wrong"]
+    if wrong:
         raise InputError(f"{folder}: {wrong[0]}" + (f" (and {len(wrong) - 1} more)" if len(wrong) > 1 else ""))
     abouts = {name: json.loads(files[name]) for name in found.claims}
     first = next(iter(abouts.values()))

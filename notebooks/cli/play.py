@@ -1,4 +1,4 @@
-"""``thermicon play``: icons played on a device under guard, with logs."""
+"""``thermicon play``: icons played and logged on a device under guard."""
 
 from __future__ import annotations
 

@@ -32,7 +32,8 @@ def play_report(result: LiveResult, predicted: dict[str, Trace]) -> list[Block]:
     if result.folder is not None:
         files = [name for play in result.plays for name in play.files]
         rows.append(("wrote", f"{result.folder}: {', '.join([*files, 'rig.toml'])}"))
-        if played := [play for play in result.plays if play.rms_K == play.rms_K]:
+        played = [play for play in result.plays if play.rms_K == play.rms_K]
+        if played:
             log, expected, _ = (shlex.quote(f"{result.folder}/{name}") for name in played[0].files)
             rig = shlex.quote(f"{result.folder}/rig.toml")
             following = [f"thermicon compare {expected} {log}", f"thermicon fit {log} --rig {rig}"]

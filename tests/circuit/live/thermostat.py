@@ -74,6 +74,7 @@ class Thermostat:
         self.gain = float(self.circuit.gain[0])
         self.sign, self.stuck_A = 1.0, math.nan
         self.now_s = self.fed_s = 0.0
+        self.turns = 0
         self.goal_C: float | None = None
         self.test_A: float | None = None
         self.sum_A = self.current_A = self.beyond_s = 0.0
@@ -99,8 +100,9 @@ class Thermostat:
 
     def sleep(self, seconds: float) -> None:
         until_s = self.now_s + seconds
-        while self.now_s + TURN_S <= until_s + 1e-9:
-            self.now_s = round((self.now_s + TURN_S) / TURN_S) * TURN_S
+        while (self.turns + 1) * TURN_S <= until_s + 1e-9:
+            self.turns += 1
+            self.now_s = max(self.now_s, self.turns * TURN_S)
             self.turn()
         self.now_s = max(self.now_s, until_s)
         if self.hangs_s:
