@@ -21,7 +21,7 @@ from ..delivery.pack import digest
 from ..play.watch import Numbers, Refused
 from ..rig.rig import AnyRig, Rig, rig_of
 from ..safety.demands import Demands
-from .controller import ControllerSettings, SimulatedController
+from .controller import LONGEST_SILENCE_S, ControllerSettings, SimulatedController
 from .demanded import MetDemand, met_demands, refuse_missing, statements_of
 from .live_player import LivePlayer, Proofs, play_in_order
 from .play_log import MeasuredPlay, PlayLog
@@ -173,7 +173,8 @@ def play_ready(
     log = PlayLog(
         folder, {"device": SIMULATED, "thermicon": this_program(), "rig_sha256": digest(ready.rig.document.encode())}
     )
-    player = LivePlayer(line, live_numbers(ready.demands), log, clock, sleep, why_stop, tell)
+    numbers = live_numbers(ready.demands, any(row.label == "cut-off" and row.how == "held" for row in met))
+    player = LivePlayer(line, numbers, log, clock, sleep, why_stop, tell)
 
     def settings() -> dict[str, object]:
         return {
@@ -192,9 +193,14 @@ def play_ready(
     return LiveResult(plays, why, met, player.proofs, line.status(), ready.rig, folder)
 
 
-def live_numbers(demands: Demands) -> Numbers:
-    """What the guard keeps to: as in exported scripts, with more looks, since a device reports by itself."""
+def live_numbers(demands: Demands, device_protects: bool) -> Numbers:
+    """What the guard keeps to: as in exported scripts, with more looks, since a device reports by itself.
+
+    Where the device holds the cut-off, this computer may be late by as much as its watchdog allows.
+    """
     numbers = guard_numbers(demands, closed_loop=True)
+    if device_protects:
+        numbers = numbers._replace(react_s=LONGEST_SILENCE_S, late_s=LONGEST_SILENCE_S)
     return numbers._replace(look_every_s=min(numbers.look_every_s, LOOK_EVERY_S))
 
 

@@ -107,6 +107,8 @@ def test_polarity_in_all_corners(ready: Callable[[str, float], ReadySet]) -> Non
                 device.off()
             if is_swapped:
                 device.swap()
-            player = LivePlayer(device, live_numbers(found.demands), PlayLog(None, {}), device.clock, device.sleep)
+            player = LivePlayer(
+                device, live_numbers(found.demands, True), PlayLog(None, {}), device.clock, device.sleep
+            )
             assert bool(player.check(32.0)) == is_swapped, f"corner {world}: {player.proofs}"
             assert device.goal_C is None

@@ -148,6 +148,19 @@ def test_ctrl_c_is_a_stop_with_a_log(tmp_path: Path, ready: Ready) -> None:
     assert (tmp_path / "out" / "turn.log.json").exists()
 
 
+@pytest.mark.parametrize(
+    "late_s, protects, is_stopped", [(0.15, False, False), (0.3, False, True), (0.6, True, False), (1.1, True, True)]
+)
+def test_how_late_this_computer_may_be(late_s: float, protects: bool, is_stopped: bool, ready: Ready) -> None:
+    """As late as the cut-off may react, where the guard has to act; else as the watchdog allows."""
+    found = ready("readme", 100.0)
+    device = Thermostat(found.rig, found.demands, np.random.default_rng(0), world=0)
+    device.at(40.0, lambda: setattr(device, "hangs_s", late_s))
+    numbers = live_numbers(found.demands, protects)._replace(rest_s=20.0)
+    player = LivePlayer(device, numbers, PlayLog(None, {}), device.clock, device.sleep)
+    assert bool(play_in_order(player, [found.drives["turn"]], 0.0, dict)[1]) == is_stopped
+
+
 def test_a_log_is_on_the_disk_while_it_is_written(tmp_path: Path, ready: Ready) -> None:
     found, now, seen = ready("readme", 100.0), SimulatedTime(), list[float]()
 
@@ -170,7 +183,7 @@ def test_nothing_that_takes_long_is_written_while_the_output_is_on(
     device = Thermostat(found.rig, found.demands, np.random.default_rng(0), world=0)
     written = []
     monkeypatch.setattr(play_log, "write_trace", lambda *given: written.append(device.goal_C))
-    player = LivePlayer(device, live_numbers(found.demands), PlayLog(tmp_path, {}), device.clock, device.sleep)
+    player = LivePlayer(device, live_numbers(found.demands, True), PlayLog(tmp_path, {}), device.clock, device.sleep)
     play_in_order(player, [found.drives["turn"]] * 2, 1.0, dict)
     assert written == [None, None]
 

@@ -27,7 +27,7 @@ def logged(number: int, folder: Path, ready: Callable[[str, float], ReadySet]) -
     drive = list(found.drives.values())[int(rng.integers(3))]
     now, settings = SimulatedTime(), ControllerSettings.of(found.demands, drive.peak_A)
     line = SimulatedController(found.rig.with_(**{CONTACT: truth}), settings, now, seed=int(rng.integers(1e9)))
-    player = LivePlayer(line, live_numbers(found.demands), PlayLog(folder, {}), now, now.sleep)
+    player = LivePlayer(line, live_numbers(found.demands, True), PlayLog(folder, {}), now, now.sleep)
     plays, why = play_in_order(player, [drive], 0.0, dict)
     assert not why
     log = folder / plays[0].files[0]

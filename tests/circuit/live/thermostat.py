@@ -232,7 +232,7 @@ def played(
     device: Thermostat, ready: ReadySet, drives: list[ReadyDrive], rest_s: float | None = None, pause_s: float = 10.0
 ) -> tuple[LivePlayer, tuple[MeasuredPlay, ...], str]:
     """Play drives on a device; `rest_s` in place of the rest that is demanded."""
-    numbers = live_numbers(ready.demands)
+    numbers = live_numbers(ready.demands, True)
     numbers = numbers if rest_s is None else numbers._replace(rest_s=rest_s)
     player = LivePlayer(device, numbers, PlayLog(None, {}), device.clock, device.sleep)
     return player, *play_in_order(player, drives, pause_s, dict)
