@@ -64,6 +64,7 @@ html_theme_options = {
     "navbar_end": ["theme-switcher"],
     "header_links_before_dropdown": 7,
     "show_toc_level": 2,
+    "collapse_navigation": True,  # a button that unfolds pages has no name for a screen reader
     "navigation_with_keys": False,
     "footer_start": ["copyright"],
     "footer_end": [],

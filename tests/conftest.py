@@ -102,10 +102,11 @@ def remembered(judge: Callable[..., Any], folder: Path) -> Callable[..., Any]:
 @pytest.fixture(scope="session", autouse=True)
 def verdicts(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """What exports ask of the safety gate is computed once in a run; tests of the gate itself ask it directly."""
-    from thermicon.circuit.delivery import ways
+    from thermicon.circuit.delivery import export, ways
 
     folder = shared_folder(tmp_path_factory) / "verdicts"
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(export, "kept_or_judged", ways.worst_cases)  # none of earlier runs
         for name in ("gate_set", "gate_shown", "gate_controlled"):
             patch.setattr(ways, name, remembered(getattr(ways, name), folder / name))
         yield

@@ -1,4 +1,7 @@
-"""The user's private cache folder for this program."""
+"""The user's private cache folder for this program, and sealed files in it.
+
+A sealed file counts only where this user wrote it, nobody else can, and no byte has changed since.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +12,11 @@ import sys
 import time
 from collections.abc import Iterable
 from contextlib import suppress
+from hashlib import sha256
 from pathlib import Path
 
 WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
+OPENED = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 
 
 def cache_folder() -> Path:
@@ -76,3 +81,30 @@ def remove_unused(files: Iterable[Path], longest_s: float) -> None:
         for file in files:
             if time.time() - max(file.stat().st_atime, file.stat().st_mtime) > longest_s:
                 file.unlink(missing_ok=True)
+
+
+def sealed_content(file: Path, largest: int = 2**30) -> bytes | None:
+    """What `write_sealed` wrote; None for no file, another user's, a link, a longer (bytes) or a changed one."""
+    with suppress(OSError), os.fdopen(os.open(file, OPENED), "rb") as opened:
+        status = os.fstat(opened.fileno())
+        foreign = sys.platform != "win32" and (status.st_uid != os.geteuid() or status.st_mode & WRITABLE_BY_OTHERS)
+        if stat.S_ISREG(status.st_mode) and not foreign and status.st_size <= largest:
+            seal, content = opened.read(32), opened.read()
+            return content if seal == _seal(file, content) else None
+    return None
+
+
+def write_sealed(file: Path, content: bytes) -> None:
+    """Keep content whole or not at all in a private folder; raises OSError."""
+    draft = file.with_name(f"{file.name}.{os.urandom(4).hex()}")
+    try:
+        draft.write_bytes(_seal(file, content) + content)
+        draft.chmod(0o600)
+        draft.replace(file)
+    finally:
+        draft.unlink(missing_ok=True)
+
+
+def _seal(file: Path, content: bytes) -> bytes:
+    """Hash of a file's name and content, so that none takes the place of another."""
+    return sha256(file.name.encode() + b"\n" + content).digest()

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 ELAPSED = re.compile(r"(\d+)(?: days? \+?|:(?=\d\d:\d\d:))(\d\d:\d\d:\d\d(?:\.\d+)?)")
 """Days and a time of day, as pandas and cameras write them."""
+STARTED_AGAIN = "the clock starts again here: give each recording its own file"
 DAY_S, HOUR_S, LONGEST_STAMP = 86_400.0, 3600.0, 60
 
 
@@ -86,6 +87,6 @@ def order_fault(time: Array) -> tuple[int, str] | None:
     if falls.size == 1 and (at == 1 or time[at] >= time[at - 2]):
         return at, "the row before is out of place: remove it"
     if np.diff(falls, prepend=0, append=len(time)).min() > 1 and falls.size <= 0.1 * len(time):
-        return at, "the clock starts again here: give each recording its own file"
+        return at, STARTED_AGAIN
     mixed = "are mixed" if falls.size < len(time) - 1 else "run backward"
     return at, f"the rows {mixed}: sort them by time"

@@ -23,7 +23,7 @@ ELSEWHERE = re.compile(
 RATE = re.compile(
     r"(?i)(?:sampl\w*[ _]?(?:rate|interval|period|freq\w*)|interval|increment)[\W_]{0,9}"
     r"([\d.]+)\s?(k?hz|[mµu]?s(?:ec)?)\b"
-    r"|([\d.]+)\s?(m?s(?:ec)?)/sample"
+    r"|([\d.]+)\s?(m?s(?:ec)?)/sample|\bdelta_x\t([\d.e+-]+)"
 )
 
 
@@ -56,7 +56,7 @@ def stated_rate(text: str) -> tuple[float, str] | None:
     """
     if not (found := RATE.search(text)):
         return None
-    number, unit = float(found[1] or found[3]), (found[2] or found[4]).lower()
+    number, unit = float(found[1] or found[3] or found[5]), (found[2] or found[4] or "s").lower()
     if number <= 0:
         return None
     if unit.endswith("hz"):
@@ -81,7 +81,6 @@ def chosen(
 ) -> NamedHeader:  # fmt: skip
     """Our names of the columns: as they say, else the only clock is time, and the only column in °C or A is taken."""
     if TIME in names:
-        _name_by_words(header, rows)
         _add_milliseconds(header, rows)
         header[:] = [name if name in (*names, *theirs.values()) or not rows or _holds(rows, at) else ""
                      for at, name in enumerate(header)]  # fmt: skip
@@ -94,7 +93,6 @@ def chosen(
             if rows and all(is_clock(cell) for row in (rows[0], rows[-1]) for cell in row[at : at + 1])
         ]
         clocks = clocks or [at for at in free if (own := parted(header[at])[1]) and own.ours == "s"]
-        rate = rate or _wristband(header, rows)
         if len(clocks) == 1:
             guesses[TIME] = header[clocks[0]]
         elif not clocks and rate is not None:
@@ -111,7 +109,29 @@ def chosen(
         if name and not there & set(wanted) and len(alike) == 1:
             guesses[name] = alike[0]
             notes.append(f"{alike[0]!r} is taken as {name}, as the only column in {'°C' if unit == 'C' else unit}")
-    return named(header, names, {**theirs, **guesses}) if guesses or TIME in header else ours
+    ours = named(header, names, {**theirs, **guesses}) if guesses or TIME in header else ours
+    return _without_idle(ours, header, rows, theirs)
+
+
+def _without_idle(
+    ours: NamedHeader, header: list[str], rows: Sequence[list[str]], theirs: Mapping[str, str]
+) -> NamedHeader:
+    """Doubt a reading of one value throughout that was taken by its name, where another in °C varies."""
+    for name in {*ours.renamed} & {*READINGS} - {*theirs}:
+        own = ours.header.index(name)
+        if _varies(rows, own) or {*ours.header} & {*READINGS} - {name}:
+            continue
+        others = [cell for at, cell in enumerate(ours.header) if is_reading(cell, "C", header) and _varies(rows, at)]
+        if others:
+            cells = [header[own] if cell == name else cell for cell in ours.header]
+            renamed = {each: said for each, said in ours.renamed.items() if each != name}
+            ours = NamedHeader(tuple(cells), renamed, {**ours.doubtful, name: (*others, header[own])})
+    return ours
+
+
+def _varies(rows: Sequence[list[str]], at: int) -> bool:
+    """Whether a column has two different cells."""
+    return any(at < len(row) and row[at] != rows[0][at] for row in rows if at < len(rows[0]))
 
 
 def _holds(rows: Sequence[list[str]], at: int) -> bool:
@@ -129,24 +149,18 @@ def _add_milliseconds(header: list[str], rows: Sequence[list[str]]) -> None:
             header[at], header[at + 1] = "Time", ""
 
 
-def _wristband(header: Sequence[str], rows: list[list[str]]) -> tuple[float, str] | None:
-    """The rate of a wristband's file: no names, the seconds since 1970, the rows per second, then the readings."""
-    if header != ["1"] or len(rows) < 3 or any(not VALUE.fullmatch(row[0]) for row in rows[:2]):
-        return None
-    begin, rate = (float(row[0].replace(",", ".")) for row in rows[:2])
-    if not (1e9 < begin < 2e9 and 0 < rate <= 1000):
-        return None
-    del rows[:2]
-    return 1 / rate, f"{rate:g} rows a second"
-
-
-def _name_by_words(header: list[str], rows: Sequence[list[str]]) -> None:
-    """Name a column by the one word that stands before its number in every row: its unit, or the name it lacks."""
-    for at in range(1, len(header)):
-        if rows and len(rows[0]) > at and NUMBER.fullmatch(rows[0][at]) and not parted(header[at])[1]:
-            words = {row[at - 1] for row in rows if len(row) > at}
-            word = words.pop() if len(words) == 1 else ""
-            if unit_of(word):
-                header[at] += f" [{word}]"
-            elif header[at] == str(at + 1) and parted(word)[1]:
-                header[at] = word
+def name_by_words(header: list[str], rows: Sequence[list[str]]) -> None:
+    """Name a column by the one word that stands beside its number in every row: its unit, or the name it lacks."""
+    full = [row for row in rows if len(row) >= len(header)]
+    for at in range(len(header) if full else 0):
+        words = {row[at] for row in full}
+        word = words.pop() if len(words) == 1 else ""
+        beside = (at - 1, at + 1) if header[at] != str(at + 1) else (at + 1, at - 1)  # "Reading, Unit"; "T: 32.1"
+        for number in beside if word and not NUMBER.fullmatch(word) else ():
+            if 0 <= number < len(header) and VALUE.fullmatch(full[0][number]) and not parted(header[number])[1]:
+                if unit_of(word):
+                    header[number] += f" [{word}]"
+                    break
+                if header[number] == str(number + 1) and parted(word)[1]:
+                    header[number] = word
+                    break

@@ -69,7 +69,9 @@ OTHERS = {
 
 LATEX = str.maketrans("", "", "$\\^~")
 BRACKET = re.compile(r"[\s_]*[(\[{<]([^)\]}>]*)[)\]}>]")
-BEHIND = re.compile(r"(.*?)(?:\s*[/,|]\s*|\s+in\s+|[\s_]+)([^\s_/,|()\[\]]+|deg(?:rees)?[ .]\w+)(?:\s*\(.*)?")
+BEHIND = re.compile(
+    r"(.*?)(?:\s*[/,|]\s*|\s+in\s+|[\s_]+|(?=[°º℃℉]))([^\s_/,|()\[\]]+|deg(?:rees)?[ .]\w+)(?:\s*\(.*)?"
+)
 SPICE = re.compile(r"([vi])\((.+)\)", re.IGNORECASE)
 LONGEST_NAME = 200
 HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
@@ -77,7 +79,7 @@ HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 def unit_of(text: str) -> Unit | None:
     """The unit that a text such as [Deg C] or ms is; None where it is none."""
-    plain = re.sub(r"\^?\\circ", "°", text).translate(LATEX).strip(" ()[]{}<>\"'").lower()
+    plain = re.sub(r"\^?\\circ", "°", text).translate(LATEX).strip(" ()[]{}<>\"'").lower().removeprefix("unix ")
     return UNITS.get(re.sub(r"[\s_]+", ".", plain)) if plain else None
 
 
@@ -132,7 +134,8 @@ class NamedHeader:
 def named(cells: Sequence[str], names: Iterable[str], theirs: Mapping[str, str]) -> NamedHeader:
     """Read a header: ours, what ``theirs`` gives, what means one of ours; of two that may, the one with a unit."""
     renamed, doubtful = dict[str, tuple[str, Unit]](), dict[str, tuple[str, ...]]()
-    places = {name: [(cells.index(own), parted(own)[1])] for name, own in theirs.items() if own in cells}
+    places = {name: [(cells.index(own), parted(own)[1] or (unit_of(own) if len(own) > 1 else None))]
+              for name, own in theirs.items() if own in cells}  # fmt: skip
     new, said = [f"({cell})" if cell in places else cell for cell in cells], set(places)
     for at, cell in enumerate(cells):
         if cell not in names and cell not in theirs.values() and not re.fullmatch("probe_.+_C", cell):

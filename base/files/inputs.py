@@ -220,14 +220,22 @@ def key_faults(
     unknown: Callable[[Place], str],
     unit_of: Callable[[str], str] = lambda key: "",
     shape_of: Callable[[str], str] = lambda key: "must be spelled otherwise",
+    likely_unit: Callable[[str, float], str] = lambda key, value: "",
 ) -> list[str]:
-    """Every fault of a table's keys, by what an `unknown` key may be, the unit of each, and the shape of a text."""
-    faults = [_in_words(error, unknown, unit_of, shape_of) for error in problem.errors(include_url=False)]
+    """Every fault of a table's keys, by what an `unknown` key may be, the unit of each, and the shape of a text.
+
+    `likely_unit` says in which other unit a number beyond a bound would be usual, or nothing.
+    """
+    faults = [_in_words(error, unknown, unit_of, shape_of, likely_unit) for error in problem.errors(include_url=False)]
     return [line for fault in faults for line in fault.splitlines()]
 
 
 def _in_words(
-    error: ErrorDetails, unknown: Callable[[Place], str], unit_of: Callable[[str], str], shape_of: Callable[[str], str]
+    error: ErrorDetails,
+    unknown: Callable[[Place], str],
+    unit_of: Callable[[str], str],
+    shape_of: Callable[[str], str],
+    likely_unit: Callable[[str, float], str],
 ) -> str:
     key = ".".join(str(part) for part in error["loc"])
     unit, value, kind, context = unit_of(key), error.get("input"), error["type"], error.get("ctx", {})
@@ -246,10 +254,13 @@ def _in_words(
         limit = context[name]
         if kind == "greater_than_equal" and 0 < limit < SMALLEST and value is not None and value <= 0:
             limit, words = 0, "greater than"
-        return f"{subject}{behind}: must be {words} {limit:g}{behind}"
+        likely = likely_unit(key, value) if isinstance(value, int | float) else ""
+        return f"{subject}{behind}: must be {words} {limit:g}{behind}{likely and f'; {likely}'}"
     if kind in NUMBERS:
         quotes = ", without quotes or unit" if isinstance(value, str) else ""
         return f"{subject}: must be a {NUMBERS[kind]}{behind and f' in{behind}'}{quotes}"
+    if kind == "string_type":
+        return f"{subject}: must be a text, in quotes"
     if kind == "bool_type":
         return f"{subject}: must be true or false"
     if kind == "literal_error":

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import json
 import re
+from collections import Counter
 from collections.abc import Mapping
 from contextlib import suppress
 
@@ -85,11 +86,6 @@ def flat(cell: str) -> dict[str, str]:
             pending = [*((f"{name}.{inner}", each) for inner, each in value.items()), *pending]
         else:
             flattened[str(name)] = "" if value is None else str(value)
-    units = {name: unit for name in flattened if name.endswith("Unit") and (unit := flattened[name])}
-    for name, unit in units.items():  # Tasmota writes "TempUnit": "C" beside them
-        stem = name.removesuffix("Unit")
-        flattened = {f"{each} [{unit}]" if stem and each.rpartition(".")[2].startswith(stem) and each != name else each:
-                     value for each, value in flattened.items()}  # fmt: skip
     return flattened
 
 
@@ -110,11 +106,11 @@ def parted_cells(header: list[str], rows: list[list[str]]) -> list[str]:
             header += list(keys)[1:]
             continue
         found = [WITH_UNIT.fullmatch(cell) for cell in there]
-        units = {each[2] for each in found if each}
-        if found.count(None) > (1 - MOST) * len(found) or len(units) != 1 or unit_of(unit := next(iter(units))) is None:
+        units = Counter(each[2] for each in found if each).most_common(1)
+        if not units or units[0][1] < MOST * len(found) or unit_of(unit := units[0][0]) is None:
             continue
         header[at] = f"{header[at]} [{unit}]"
         for row in rows:
-            if at < len(row) and (part := WITH_UNIT.fullmatch(row[at])):
+            if at < len(row) and (part := WITH_UNIT.fullmatch(row[at])) and part[2] == unit:
                 row[at] = part[1]
     return header

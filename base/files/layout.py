@@ -23,11 +23,11 @@ CLOCK = re.compile(
     r"(?:Z| ?[+-]\d\d:?\d\d)?[\])]?"
 )
 VALUE = re.compile(
-    r"[-+−]?(?:\d+(?:[.,]\d*)?|[.,]\d+|\d{1,3}(?:[.,'’ ]\d{3})+(?:[.,]\d+)?)(?:[eE][-+]?\d+)?"
+    r"(?:[-+−] *)?(?:\d+(?:[.,]\d*)?|[.,]\d+|\d{1,3}(?:[.,'’ ]\d{3})+(?:[.,]\d+)?)(?:[eE][-+]?\d+)?"
     r"|\d{1,4}([-/.])\d{1,2}\1\d{1,4}"
 )
 """A number, or a date."""
-WITH_UNIT = re.compile(r"([-+−]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\d\s].*)")
+WITH_UNIT = re.compile(r"([-+−]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\d\s(].*)")
 RULE = set("-=*+_")
 LONGEST_CLOCK = 40
 SAMPLE, LONGEST_LINE, LONGEST_CELL, LONGEST_FOOT = 300, 10_000, 60, 20
@@ -72,6 +72,11 @@ def is_clock(cell: str) -> bool:
     (True, True, False)
     """
     return ":" in cell and len(cell) <= LONGEST_CLOCK and CLOCK.fullmatch(cell) is not None
+
+
+def is_told(cells: Sequence[str]) -> bool:
+    """Whether a line says something of the table, as comments and LabChart's ``TopValue=`` do, and is no row of it."""
+    return cells[0].startswith(COMMENTS) or cells[0].endswith("=")
 
 
 def is_rule(cells: Sequence[str]) -> bool:
@@ -126,7 +131,7 @@ def _judged(
     alike = [share > 0 and len(cells) <= width and not _is_stamped(cells) and words.isdisjoint(cells)
              for (_, cells), share in zip(rows, shares, strict=True)]  # fmt: skip
     exact = [good and len(cells) == width for good, (_, cells) in zip(alike, rows, strict=True)]
-    told = [at for at, (_, cells) in enumerate(rows) if not (cells[0].startswith(COMMENTS) or is_rule(cells))]
+    told = [at for at, (_, cells) in enumerate(rows) if not (is_told(cells) or is_rule(cells))]
     pairs = itertools.zip_longest(told, told[1:])
     first = next((at for at, after in pairs if exact[at] and (after is None or alike[after])), len(rows))
     while first and shares[first - 1] == 1 and 1 < len(rows[first - 1][1]) < width:  # rows that end early
@@ -135,9 +140,9 @@ def _judged(
     named = [(*_names(cells, width, names, theirs, lines[above : above + 1], row, mark), at)
              for at, (above, cells) in enumerate(rows[:first])]  # fmt: skip
     known = [each for each in named if each[0] >= 0.9]
-    best = max(
-        known, key=lambda each: (each[0], -each[2]), default=max(named, key=lambda each: each[::2], default=None)
-    )
+    last = 1 if "time_s" in names else -1  # right above the rows; where rows are words, the first line
+    likely = max(named, key=lambda each: (each[0], last * each[2]), default=None)
+    best = max(known, key=lambda each: (each[0], -each[2]), default=likely)
     if best is None or best[0] <= 0:
         best = None
     if width and best is not None and mark == " " and len(best[1]) not in (width, width - 1):
@@ -166,7 +171,7 @@ def _is_stamped(cells: Sequence[str]) -> bool:
 
 def _share(cells: Sequence[str]) -> float:
     """The part of the cells that are numbers, of those that hold anything; 0 for a comment."""
-    if cells[0].startswith(COMMENTS):
+    if is_told(cells):
         return 0.0
     there = [cell for cell in cells if cell and cell.lower() not in NOTHINGS]
     return sum(map(is_number, there)) / len(there) if there else 0.0
@@ -192,9 +197,9 @@ def _names(
         plain = plain[1:]
     again = 0.0
     if width and len(plain) not in (width, width - 1):
-        ways = (next(cells_of(iter([line[0].lstrip("#%; ")]), mark), (0, plain))[1] for mark in MARKS if line)
+        ways = (next(cells_of(iter([line[0].lstrip("#%; ")]), mark), (0, plain))[1] for mark in ("  ", *MARKS) if line)
         other = next((way for way in ways if len(way) == width > 1), None)
-        plain, again = ([cell.strip(",;") for cell in other], 0.2) if other else (plain, 0.0)
+        plain, again = ([" ".join(cell.strip(",;").split()) for cell in other], 0.2) if other else (plain, 0.0)
     while width and len(plain) > width and not plain[-1]:
         plain = plain[:-1]
     pairs = list(itertools.zip_longest(plain, row[: len(plain)], fillvalue=""))
@@ -228,7 +233,7 @@ def rows_of(layout: Layout, text: str) -> Iterator[tuple[int, list[str], bool]]:
             and layout.key
         ):
             yield place, cells, True
-        elif not (cells[0].startswith(COMMENTS) or is_rule(cells)):
+        elif not (is_told(cells) or is_rule(cells)):
             there = [cells[key] for key in layout.key if key < len(cells)]
             said = [cell for cell in there if cell and cell.lower() not in NOTHINGS]
             whole = not layout.key or any(map(is_number, said)) or (not said and len(cells) > 1)

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..words.number_text import count_of
-from .clock import DAY_S, HOUR_S, order_fault, seconds_of, spread
+from .clock import DAY_S, HOUR_S, STARTED_AGAIN, order_fault, seconds_of, spread
 from .column_choice import is_setting
 from .column_names import Unit, parted
+from .layout import is_number
 from .table import FEW, Table, as_number
+from .table_content import DECIMALS
 from .units import (
     ON_SKIN_C,
     POSSIBLE_C,
@@ -39,17 +42,23 @@ MOST_ALIKE = 0.95
 """The part of a column's cells that must be such as one of ours has, to be proposed."""
 UNPADDED = re.compile(r"\d+[.,]\d{1,3}")
 """Seconds, a point, and the milliseconds as a whole number, as sketches print them."""
+COUNTER = re.compile(r"(?i)^(\d+|#|n[or]?\.?)$|frame|index|seq|sample|record|scan|row|step|entry|count|point")
+"""Names of columns that may number the rows."""
 CLOCK_CURE = "write times as seconds from any start, or as 2026-03-02 23:59:58.050"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MeasuredTable:
-    """Times (rows,) in s that do not fall, columns (rows,) with NaN in gaps, the line of each row, and notes."""
+    """Times (rows,) in s that do not fall, columns (rows,) with NaN in gaps, the line of each row, and notes.
+
+    What is ``clocked`` has its times from a clock, whose unit is known.
+    """
 
     time_s: Array
     columns: dict[str, Array]
     lines: tuple[int, ...]
     notes: tuple[str, ...]
+    clocked: bool
 
 
 def missing(table: Table, name: str, what: str) -> InputError:
@@ -67,6 +76,12 @@ def missing(table: Table, name: str, what: str) -> InputError:
     for each, cells in several:
         said += f"; {' and '.join(cells[:FEW])} may be {each}"
     known = {each: cells[0] for each, cells in theirs.items() if cells and theirs[first]}
+    if DECIMALS in table.unnamed:
+        return table.fault("table", None, said, "whole numbers would be read without their decimals")
+    free = {parted(cell)[1] for cell in {*table.header} - {*table.names.renamed, TIME, "icon", ""}}
+    if not known and not any(unit is None or unit.ours == first.rpartition("_")[2] for unit in free):
+        cure = "no column is left that may be it: give a table that has it"
+        return table.fault("table", table.line or None, said, cure)
     return table.fault("table", table.line or None, said, "say which it is").to(columns=known or {first: "THEIRS"})
 
 
@@ -106,8 +121,9 @@ def _may_be(name: str, table: Table, cell: str) -> bool:
     if len(sound) < MOST_ALIKE * len(values) or len(sound) < 2:
         return False
     rising = bool((np.diff(sound) > 0).mean() >= MOST_ALIKE)
+    counted = COUNTER.search(cell) and bool((np.diff(sound) == len(table.rows) // 400 + 1).all())
     if name == TIME or rising or not np.ptp(sound):
-        return name == TIME and rising
+        return name == TIME and rising and not counted  # numbers of rows are no times
     low, high = ON_SKIN_C if name.endswith("_C") else USUAL_A
     sound = sound - 273.15 * (name.endswith("_C") and np.median(sound) > 273.15)
     return bool(((sound >= low) & (sound <= high)).mean() >= MOST_ALIKE)
@@ -132,6 +148,9 @@ def measured(
     for name, (_, unit) in table.names.renamed.items():
         if name in columns:
             columns[name] = columns[name] * unit.factor + unit.plus
+    if sources := _interleaved(table, columns):
+        what = f"rows of {' and '.join(map(repr, sources[:FEW]))} follow one another in one column"
+        raise table.fault("table", None, what, "keep the rows of one of them, or give each a column of its own")
     if (few := len(time)) < 2:
         what = f"{few or 'no'} row{'s' * (not few)} below the names of the columns"
         raise table.fault("table", None, what, "at least two are needed, a start and an end")
@@ -175,7 +194,41 @@ def measured(
     if not ours and not clocked and (like := like_units_of_time(time)):
         what = f"time_s goes in steps of {np.median(np.diff(time)):g} over {time[-1] - time[0]:g}, read as s"
         notes.append(f"{what}: these look like {like[0]}; if they are, {like[1]} to have s")
-    return MeasuredTable(time, columns, tuple(lines.tolist()), tuple(notes))
+    return MeasuredTable(time, columns, tuple(lines.tolist()), tuple(notes), clocked)
+
+
+def _interleaved(table: Table, columns: Mapping[str, Array]) -> list[str]:
+    """Words beside the rows of several sources, each of which varies less by itself than they do together."""
+    import numpy as np
+
+    for name in table.header:
+        if name in (*columns, TIME, "") or table.header.count(name) > 1:
+            continue
+        words = np.array(list(table.texts(name)))
+        sources, which = np.unique(words, return_inverse=True)
+        mixed = 2 <= len(sources) <= min(FEW, len(words) // 4) and (words[1:] != words[:-1]).mean() > 0.3
+        if mixed and not any(map(is_number, sources)):
+            own = [np.flatnonzero(which == k) for k in range(len(sources))]
+            for values in columns.values():
+                apart = sum(float(np.nansum(np.abs(np.diff(values[rows])))) for rows in own)
+                if apart < 0.5 * float(np.nansum(np.abs(np.diff(values)))):
+                    return [str(source) for source in sources]
+    return []
+
+
+def recordings(table: Table) -> list[Table]:
+    """A table cut where its clock starts again; whole where it does not, or where rows are only sent again."""
+    import numpy as np
+
+    if TIME not in table.header:
+        return [table]
+    time, _ = _times(table, [])
+    fall = order_fault(time)
+    if not fall or fall[1] != STARTED_AGAIN or len(set(map(tuple, table.rows))) < len(table.rows):
+        return [table]
+    ends = [0, *(np.flatnonzero(np.diff(time) < 0) + 1).tolist(), len(time)]
+    return [replace(table, rows=table.rows[begin:end], lines=table.lines[begin:end])
+            for begin, end in itertools.pairwise(ends)]  # fmt: skip
 
 
 def _times(table: Table, notes: list[str]) -> tuple[Array, bool]:

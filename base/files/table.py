@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from ..checks.arguments import InputError
-from .column_choice import chosen, stated_rate, stated_unit
-from .column_names import NamedHeader, parted, unit_of
+from .column_choice import chosen, name_by_words, stated_rate, stated_unit
+from .column_names import NamedHeader, Unit, parted, unit_of
 from .labelled_lines import parted_cells
 from .layout import LONGEST_CELL, NOTHINGS, WITH_UNIT, layout_of
 from .table_content import FEW as FEW
@@ -34,6 +34,8 @@ LARGEST = 1e38
 QUOTED_DECIMAL = re.compile(r'"[-−]?(\d+,\d{1,2}|0,\d+|\d+,\d{4,})"')
 """Shows that decimals have commas, where commas also separate the cells; 1,234 may be a thousand."""
 GROUPED = re.compile(r"[-+−]?\d{1,3}(?:([., ' ])\d{3})+(?:[.,]\d+)?")
+SIGNED = re.compile(r"^([-+−]) +(?=\d)")
+"""A sign with blanks behind it, as Graphtec's loggers write."""
 DATED = re.compile(r"(\d{1,2})[. -]{1,2}([A-Za-zäé]{3})[a-zäé.]*")
 MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
 GERMAN = str.maketrans({"ä": "a", "i": "y", "k": "c", "z": "c"})
@@ -100,29 +102,34 @@ class Table:
                 limit = f" of at most {LARGEST:g}" if abs(value) < math.inf else ""
                 quoted = repr(cell if len(cell) <= LONGEST_CELL else f"{cell[:LONGEST_CELL]}…")
                 what = f"{name} is {quoted}, not a finite number{limit}" if cell else f"{name} is empty"
-                raise self.fault("cell", self.lines[row], what, self._cure(name, row, cell, cure))
+                raise self.fault("cell", self.lines[row], what, self._cure(name, row, cell, cure, gaps is not None))
         return values
 
-    def _cure(self, name: str, row: int, cell: str, cure: str) -> str:
+    def _cure(self, name: str, row: int, cell: str, cure: str, gaps: bool) -> str:
         date = DATED.fullmatch(cell)
         if date and (month := date[2].lower().translate(GERMAN)) in MONTHS:
             was = f"{cell} was {date[1]}.{MONTHS.index(month) + 1}"
             return f"a spreadsheet made dates of numbers: {was}; export the numbers again as text"
-        bad = sum(math.isnan(as_number(each, self.mark)) for each in self.texts(name))
+        known, cells = ("", *NOTHINGS) if gaps else (), zip(self.lines, self.texts(name), strict=True)
+        bad = [line for line, each in cells if math.isnan(as_number(each, self.mark)) and each.lower() not in known]
         if GROUPED.fullmatch(cell):
             return "write numbers without marks between thousands"
-        if (found := WITH_UNIT.fullmatch(cell)) and unit_of(found[2]):
-            theirs = self.names.renamed.get(name, (name,))[0]
+        theirs, own = self.names.renamed.get(name, (name, Unit("")))
+        own = own if own.ours else Unit(name.rpartition("_")[2])
+        if (found := WITH_UNIT.fullmatch(cell)) and unit_of(found[2]) == own:
             return f"write {found[1]}; units belong in the names of the columns, as in {theirs} [{found[2]}]"
         alone = len(self.header) > 1 and set(self.rows[row]) <= {"", cell}
-        if bad > FEW_BAD * len(self.rows) > 1:
-            return f"{bad} of {len(self.rows)} rows have no number there: export it again, or name another column"
-        return "remove this line, which is not a row of the table" if cell and alone else cure
+        if len(bad) > FEW_BAD * len(self.rows) > 1:
+            return f"{len(bad)} of {len(self.rows)} rows have no number there: export it again, or name another column"
+        if cell and alone:
+            return "remove this line, which is not a row of the table"
+        others = [str(line) for line in bad if line != self.lines[row]]
+        return f"{cure}; likewise in line {' and '.join(others)}" if others else cure
 
 
 def as_number(cell: str, mark: str = ",") -> float:
     """Return the number in a cell, NaN where there is none; a decimal comma counts where ``mark`` is another."""
-    cell = cell.replace("'", "").replace("’", "")
+    cell = SIGNED.sub(r"\1", cell.replace("'", "").replace("’", ""))
     plain = cell.replace(",", ".") if mark != "," and cell.count(",") == 1 and "." not in cell else cell
     try:
         return math.nan if "_" in plain else float(plain.replace("−", "-"))
@@ -149,6 +156,8 @@ def read_table(
     if len(rows) > most_rows:
         raise fault("size", None, f"more than {most_rows:,} rows", "split the file, or keep every tenth reading")
     header = parted_cells(content.header, rows)
+    if "time_s" in names:
+        name_by_words(header, rows)
     theirs = {name: _column(cell, header) for name, cell in theirs.items()}
     if not header[0] and rows and ":" in rows[0][0]:
         header[0] = "Time"  # PicoLog leaves the name of its clock empty
@@ -164,8 +173,6 @@ def read_table(
         at = named_columns[0]
         stated = "" if parted(header[at])[1] else stated_unit(content.above)
         header[at] += f" [{stated}]" if stated else ""
-        if rows[0][at : at + 1] == [str(len(rows) - 1)]:  # the number of the rows stands above them
-            del rows[0], places[0]
     ours = chosen(header, rows, names, theirs, rate, notes)
     places = places[len(places) - len(rows) :]
     for name, (own, unit) in ours.renamed.items():

@@ -51,7 +51,7 @@ def table_text(data: bytes, fault: Fault, example: str) -> tuple[str, str]:
     for begin, (kind, cure) in OTHERS.items():
         if data.lstrip().startswith(begin):
             raise fault("binary", None, f"this is {kind}, not a table", cure)
-    if wrong := other_kind(data[:HEAD].decode("utf-8", "replace"), "table"):
+    if wrong := other_kind(data[:HEAD].replace(b"\0", b"").decode("utf-8", "replace"), "table"):
         raise fault("binary", None, *wrong)
     if data.startswith(b"TDSm"):
         return _tdms_text(data, fault), ""
@@ -73,8 +73,6 @@ def table_text(data: bytes, fault: Fault, example: str) -> tuple[str, str]:
     text = text.replace("\r\n", "\n").replace("\r", "\n").replace("Â°", "°").replace("Âµ", "µ")
     if FULL_WIDTH.search(text[:HEAD]):
         text = unicodedata.normalize("NFKC", text)
-    if re.search(r"(?m)^Index +time ", text[:10_000]):  # pages of ngspice's print
-        text = "\n".join(line if re.match(r"Index|\d", line) else "" for line in text.split("\n"))
     return text, rare
 
 

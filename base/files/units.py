@@ -26,6 +26,8 @@ POSSIBLE_C, JUMP_K = (-10.0, 60.0), 20.0
 """What touches skin is within; a reading beyond that jumps by more, from and to its neighbours, is an error."""
 MOST_LEFT_OUT = 0.2
 """Larger shares of impossible readings are no single errors of a sensor."""
+MOST_WILD = 0.05
+"""Larger shares of readings beyond a limit are no slips, but another unit."""
 LIMITS = {"A": (50.0, "milliamperes"), "V": (200.0, "millivolts")}
 """Far above what any display on skin takes, and far below what it takes in milliamperes and millivolts."""
 STEPS_S, LENGTHS_S, LONG_S = (1e-4, 2.0), (1.0, 3600.0), 600.0
@@ -72,6 +74,10 @@ def unit_fault(name: str, values: Array) -> tuple[str, str] | None:
     limit, small = LIMITS.get(unit, (np.inf, ""))
     if most > LARGEST:
         return f"{name} reaches {most:g}, beyond the {LARGEST:g} that any instrument gives", "leave that row out"
+    if 0 < (beyond := np.abs(there) > limit).sum() <= MOST_WILD * len(there):
+        wild = there[np.argmax(np.abs(there))]
+        what = f"{name} is {wild:g} {unit} in {beyond.sum()} of {len(there):,} rows"
+        return what, f"no display takes more than {limit:g} {unit}: correct these cells, or leave them empty"
     if most > limit:
         what = f"{name} reaches {most:g} {unit}, above {limit:g} {unit}: it looks like {small}"
         return what, f"divide it by 1000, so that it is in {unit}"

@@ -13,18 +13,19 @@ from thermicon.icons import Icon
 
 from ..rig.rig import Rig
 from ..solver.displayed import judge_display, part_of, trace_of_display
-from ..solver.drive import Drive
+from ..solver.drive import Drive, switched
 from ..solver.inverse import Design, baseline_C, design, target_at
 from ..solver.modes import modes_of
 from ..solver.simulate import duration_s, rows_until, simulate_current
+from ..solver.steady import steady_of
 from ..solver.trace import Trace
 from .delivered_drive import DeliveredDrive, ModuleDrive, Narrowed, ThermodeDrive
 from .device import Device
 from .devicefile import DeviceError
-from .flows import flow_of, start_of
 from .samples import Samples, led, rate_of, sample, within
 from .setpoints import Setpoints, closed, display_of, setpoints_of
-from .temperatures import designed_until
+from .shaped import looped
+from .temperatures import designed_until, follow_samples
 
 ROWS_HZ = 100.0
 """Rows of a thermode's traces per second, as those of `simulate_current`."""
@@ -182,3 +183,28 @@ def _setpoints(icon: Icon, rig: Rig, device: Device, base_C: float, end_s: float
     if end_s > times[-1] + 1e-9:
         times, levels = np.append(times, end_s), np.append(levels, levels[-1])
     return setpoints_of(device, times, levels, curve=False)
+
+
+def flow_of(device: Device, rig: Rig, samples: Samples) -> Drive:
+    """The current in A: held from row to row, switched by a bridge, or what lets the display follow set-points.
+
+    Raises DeviceError for a thermode, of which it is not known.
+    """
+    if device.driven_by == "set-points":
+        raise DeviceError(f"{device.name} is a thermode: its current is not known")
+    if device.driven_by == "temperatures":
+        return follow_samples(looped(rig), samples)
+    if device.driven_by == "duty":
+        return switched(samples.command, samples.rate_Hz, device.most("carrier frequency"), device.bridge_A)
+    rows = samples.rows()
+    return Drive(samples.time_s[rows], samples.command[rows] * device.kind.unit_A(device, rig), held=True)
+
+
+def start_of(device: Device, rig: Rig, samples: Samples, gain: float = 1.0) -> Array | None:
+    """State in °C in which a play begins, at a gain of the current; None: the steady state of its first current.
+
+    Of a bridge it is that of its first duty, without the ripple.
+    """
+    if device.driven_by == "duty":
+        return steady_of(rig, float(samples.command[0]), device.bridge_A * gain)
+    return None

@@ -15,8 +15,10 @@ from ..rig.rig import AnyRig, Rig
 from .device import Device
 from .export_folder import HOW, check_export_folder, publish
 from .formats import Format, load_format
+from .kept_verdicts import kept_or_judged
 from .pack import pack
 from .prepare import Prepared, Refusal, prepare_set
+from .ways import worst_cases
 
 CURE = "give a new or empty folder, or use the command thermicon export, which replaces an earlier export"
 
@@ -161,7 +163,8 @@ def export(
     pause_s
         Pause in s between plays that the verdict assumes; None: the time that the rig needs to recover.
     force
-        Whether to pack icons that miss their target or lose too much; their sidecars say so. Unsafe icons stay refused.
+        Whether to pack icons that miss their target or lose too much; their sidecars say so. Unsafe icons stay refused,
+        and no kept verdict is used.
     folder
         A folder to write the files into; it must not exist or be empty, and gets all files or none.
     felt
@@ -199,7 +202,8 @@ def export(
         if where is not None:
             where.parent.mkdir(parents=True, exist_ok=True)
             check_export_folder(where, how=CURE)
-        prepared = prepare_set(chosen, on, played, form, tail_s=tail_s, pause_s=pause_s, step=step)
+        judge = worst_cases if force else kept_or_judged
+        prepared = prepare_set(chosen, on, played, form, judge=judge, tail_s=tail_s, pause_s=pause_s, step=step)
         found = Export(on, played, form, prepared, () if felt is None else tuple(felt(prepared)), force)
         if where is not None:
             found.write(where, how=CURE)

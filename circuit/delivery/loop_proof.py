@@ -221,7 +221,7 @@ def _followed_C(loops: AnyLoop, bank: Bank, rigs: Sequence[int], loop: Loop, lev
     bias = np.clip(bias, bank.plates[rig_of, LOWEST_A], bank.plates[rig_of, HIGHEST_A])
     displays_C, period_s = [], 1.0 / module.ensemble.rig.driver.update_Hz
     for kp, ki in zip(loop.kp_A_per_K, loop.ki_A_per_Ks, strict=True):
-        flowing = np.zeros((len(bank.count), 5))
+        flowing = np.zeros((len(bank.plates), 5))
         flowing[:, [KP, KI, KD]] = np.outer(module.ensemble.gain, [kp, ki, loop.kd_As_per_K])
         flowing[:, LAG_S], flowing[:, DELAY_S] = loop.sensor_lag_at_most_s, loop.delay_at_most_s
         displays_C.append(run_regulate(bank, rig_of, goal_of, period_s, goals, flowing, bias, states)[1])

@@ -15,8 +15,8 @@ from ..solver.batch_inputs import Bank, cut, run_forward
 from ..solver.network import network_of
 from ..solver.simulate import rows_until
 from ..solver.steady import state_under_current
+from .deliver import start_of
 from .delivered_drive import DeliveredDrive, ModuleDrive, ThermodeDrive
-from .flows import start_of
 from .setpoints import display_of, lag_of
 
 AT_ONCE, LAGGED = "followed at once", "followed with its lag"

@@ -16,7 +16,7 @@ from ..rig.rig import AnyRig, Rig
 from .forward import started
 from .identify import identified, tellable
 from .keys import CONTACT, FitError, FitKey, free_keys, possible_keys
-from .log import Log, LogError, read_log
+from .log import Log, LogError, read_logs
 from .notes import Noticed, beyond_noise, closing, disagreement, failed, far_off, late_column, remarks, unsteady
 from .overlay import aligned, check_clocks, check_sensors
 from .problem import OFFSET_SD_K, FitProblem, changed_layers
@@ -49,7 +49,7 @@ def fit(
     Parameters
     ----------
     logs
-        A log or several: a `Log`, the name of its file (see `read_log`), or a table of pandas with the same columns. A
+        A log or several: a `Log`, the name of its file (see `read_logs`), or a table of pandas with the same columns. A
         log without a drive has a clock of its own and belongs to the log before it.
     rig
         The rig to begin with, or its name or file; what is not free stays as it is.
@@ -108,7 +108,7 @@ def fit(
     check_sensors(problem)
     solution = solve(problem)
     moving = [noticed.facts["run"] for noticed in unsteady(problem, solution.theta)]
-    runs = tuple(started(rig, run, contradicted=run.name in moving) for run in problem.runs)
+    runs = tuple(started(rig, run, offset_K, contradicted=run.name in moving) for run in problem.runs)
     if any(run.start_C != before.start_C for run, before in zip(runs, problem.runs, strict=True)):
         problem = problem.again(problem.rig, keys, runs)
         solution = solve(problem)
@@ -119,10 +119,10 @@ def fit(
 
 def _logs(logs: Log | str | Path | pd.DataFrame | Sequence[Log | str | Path | pd.DataFrame]) -> list[Log]:
     several = list(logs) if isinstance(logs, Sequence) and not isinstance(logs, str) else [logs]
-    read = [log if isinstance(log, Log) else read_log(log) for log in several]
+    read = [each for log in several for each in ([log] if isinstance(log, Log) else read_logs(log))]
     for place, log in enumerate(read):
         for earlier in read[:place]:
-            if earlier is log or (log.sha256 and log.sha256 == earlier.sha256):
+            if earlier is log or (log.sha256 and (log.sha256, log.run) == (earlier.sha256, earlier.run)):
                 raise LogError(
                     f"{log.name}: has the same content as {earlier.name}, given before it; counted twice, a log "
                     f"makes the intervals too narrow: name it once"
@@ -171,5 +171,5 @@ def _result(
     return RigFit(
         fitted, parameters, correlation, channel_fits(problem, solution.theta), sources,
         (*notes, *map(str, (*disagreed, *remarked, *last))), solution.converged, misfit,
-        tuple(layer.name for layer in start.skin.layers) if layers else (),
+        tuple(layer.name for layer in start.skin.layers) if layers else (), problem.offset_sd_K,
     )  # fmt: skip

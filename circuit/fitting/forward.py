@@ -87,7 +87,12 @@ def predict(rig: Rig, run: Run, phase: float = 0.0, start_K: float = 0.0) -> Pre
     return Prediction(trace, logged, rig.module.resistance_ohm, display_probe, gain)
 
 
-def started(rig: Rig, run: Run, *, contradicted: bool = False) -> Run:
+def start_sd_K(offset_sd_K: float) -> float:
+    """Standard deviation of a start about the first reading of a sensor that may be so far off."""
+    return max(START_SD_K, offset_sd_K)
+
+
+def started(rig: Rig, run: Run, offset_sd_K: float = 0.0, *, contradicted: bool = False) -> Run:
     """The run with the display's first reading as its start, where the first drive would hold it elsewhere."""
     display = [channel for channel in run.channels if channel.column == DISPLAY and not channel.clock]
     if run.driven_by == DISPLAY or not display or display[0].time_s[0] > run.begin_s + run.step_s:
@@ -97,7 +102,7 @@ def started(rig: Rig, run: Run, *, contradicted: bool = False) -> Run:
         held_C = float(predict(rig, run).at(DISPLAY, display[0].time_s[:1] - run.begin_s)[0])
     except RigError:
         contradicted = True
-    return replace(run, start_C=start_C) if contradicted or abs(start_C - held_C) > START_SD_K else run
+    return replace(run, start_C=start_C) if contradicted or abs(start_C - held_C) > start_sd_K(offset_sd_K) else run
 
 
 def _under_display(rig: Rig, run: Run, rate_Hz: float) -> Prediction:

@@ -14,7 +14,7 @@ import numpy as np
 from thermicon.base.files.clock import order_fault
 from thermicon.base.files.column_choice import is_reading
 from thermicon.base.files.inputs import read_bytes, table_fault
-from thermicon.base.files.measured_table import measured, missing
+from thermicon.base.files.measured_table import measured, missing, recordings
 from thermicon.base.files.table import read_table
 from thermicon.base.files.units import like_units_of_time, unit_fault
 from thermicon.base.numbers.arrays import Array
@@ -48,7 +48,7 @@ class Log:
     """A log of one clock: `time_s` (rows,) in s, increasing, and columns (rows,), NaN where nothing was recorded.
 
     `sha256` is the digest of its file, empty where it came from none; `notes` say what was adjusted or left out on
-    reading, `lost` which of our columns the file does not call as was said.
+    reading, `lost` which of our columns the file does not call as was said, `run` which recording of its file it is.
 
     Examples
     --------
@@ -63,6 +63,7 @@ class Log:
     columns: tuple[tuple[str, Array], ...]
     notes: tuple[str, ...] = ()
     lost: Mapping[str, str] = field(default_factory=dict)
+    run: int = 1
 
     def __repr__(self) -> str:
         span = self.time_s[-1] - self.time_s[0]
@@ -75,14 +76,18 @@ class Log:
         *,
         sha256: str = "",
         notes: Sequence[str] = (),
+        clocked: bool = False,
     ) -> Log:
-        """A checked log of columns by name, `time_s` among them; raises LogError for what cannot be a log."""
+        """A checked log of columns by name, `time_s` among them; raises LogError for what cannot be a log.
+
+        What is `clocked` has its times from a clock, whose unit is known.
+        """
         values = {key: np.asarray(column, dtype=np.float64) for key, column in columns.items()}
         if "time_s" not in values:
             raise LogError(f"{name}: the column time_s (time in s) is missing; found {', '.join(values) or 'nothing'}")
         _check_lengths(name, values)
         time = values.pop("time_s")
-        _check_times(name, time)
+        _check_times(name, time, clocked)
         used = {key: column for key, column in values.items() if is_known(key)}
         empty = [key for key, column in used.items() if not np.isfinite(column).any()]
         used = {key: column for key, column in used.items() if key not in empty}
@@ -144,7 +149,7 @@ def _check_lengths(name: str, values: Mapping[str, Array]) -> None:
             raise LogError(f"{name}: unequal lengths: {what}; cut the longer column")
 
 
-def _check_times(name: str, time: Array) -> None:
+def _check_times(name: str, time: Array, clocked: bool) -> None:
     if not np.isfinite(time).all():
         row = int(np.argmin(np.isfinite(time)))
         raise LogError(f"{name}, row {row + 1}: time_s is empty; remove the row")
@@ -154,7 +159,7 @@ def _check_times(name: str, time: Array) -> None:
         raise LogError(f"{name}, row {row + 1}: {what}: {why}")
     length, step = float(time[-1] - time[0]), float(np.median(np.diff(time)))
     usual = SHORTEST_S <= step <= SLOWEST_S
-    like = like_units_of_time(time, whole=usual)
+    like = None if clocked else like_units_of_time(time, whole=usual)
     if like and (length > LONGEST_S or not usual):
         what = f"time_s goes in steps of {step:g} over {length:g}: these look like {like[0]}; {like[1]} to have s"
         raise LogError(f"{name}: {what}{'; of a run that is as long in s, keep an hour' if usual else ''}")
@@ -169,10 +174,20 @@ CURE = "leave the cell empty"
 
 
 def read_log(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None = None) -> Log:
-    r"""Read a measured log: a table with a line of names, its cells separated by commas, semicolons or tabs.
+    """Read a measured log of one recording, as `read_logs` does."""
+    logs = read_logs(path, columns)
+    if len(logs) > 1:
+        what = f"{path}: the clock starts again {len(logs) - 1} times"
+        raise LogError(f"{what}: give each recording its own file, or use read_logs")
+    return logs[0]
+
+
+def read_logs(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None = None) -> list[Log]:
+    r"""Read measured logs: a table with a line of names, its cells separated by commas, semicolons or tabs.
 
     A table of pandas is read as the file that it would write, with its index where that holds times. `columns` says
-    what the file calls ours, such as {"display_C": "T1"}, where that does not follow from its names.
+    what the file calls ours, such as {"display_C": "T1"}, where that does not follow from its names. Where the clock
+    starts again, another log begins.
     Raises LogError for a file that is not a log, with its line or column and the cure.
 
     >>> import tempfile
@@ -180,8 +195,8 @@ def read_log(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None 
     ...     path = Path(folder) / "rig.csv"
     ...     rows = "".join(f"{k / 10},0.1,32.0\n" for k in range(30))
     ...     _ = path.write_text("time_s,current_A,display_C\n" + rows)
-    ...     read_log(path)
-    Log('rig.csv', 30 rows, 2.9 s: current_A, display_C)
+    ...     read_logs(path)
+    [Log('rig.csv', 30 rows, 2.9 s: current_A, display_C)]
     """
     if isinstance(path, str | Path):
         where, data = Path(path), read_bytes(Path(path), "log", MOST_MB, LogError)
@@ -193,10 +208,16 @@ def read_log(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None 
     blind = not any(name.endswith("_C") for name in wanted)
     if table.names.doubtful or not wanted or (blind and any(is_reading(cell, "C", ()) for cell in table.header)):
         raise missing(table, "display_C", f"one of {', '.join(NAMES[1:])}")
-    found = measured(table, wanted, CURE)
+    parts, digest, logs = recordings(table), hashlib.sha256(data).hexdigest(), list[Log]()
     unused = ", ".join([name for name in table.header if name not in ("time_s", "icon", "", *wanted)][:8])
-    said = (*found.notes, *([f"columns that are not used: {unused}"] if unused else []))
-    notes = [f"{where.name}: {note}" for note in said]
-    digest = hashlib.sha256(data).hexdigest()
-    log = Log.of(where.name, {"time_s": found.time_s, **found.columns}, sha256=digest, notes=notes)
-    return replace(log, lost={name: f"{where.name}: {said}" for name, said in table.lost.items()})
+    for run, part in enumerate(parts, 1):
+        found = measured(part, wanted, CURE)
+        again = [f"line {part.lines[0]}: the clock starts again: read as another recording"] if run > 1 else []
+        said = (*again, *found.notes, *([f"columns that are not used: {unused}"] if unused else []))
+        name = where.name if len(parts) == 1 else f"{where.name}, recording {run}"
+        notes = [f"{name}: {note}" for note in said]
+        values = {"time_s": found.time_s, **found.columns}
+        log = Log.of(name, values, sha256=digest, notes=notes, clocked=found.clocked)
+        lost = {name: f"{where.name}: {said}" for name, said in table.lost.items()}
+        logs.append(replace(log, lost=lost, run=run))
+    return logs

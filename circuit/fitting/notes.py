@@ -56,7 +56,8 @@ def disagreement(
     if not solution.converged:
         return (*missed, Noticed("unrested")), Noticed("unrested-why")
     if not missed:
-        combined = bool(unknown) and _combined(problem, solution.theta, unknown)
+        mended = not unknown or far_off(problem, solution.theta)  # of keys that a wrong sensor hides nothing is said
+        combined = not mended and _combined(problem, solution.theta, unknown)
         return ((Noticed("combination"),), Noticed("no-match-why")) if combined else ((), None)
     if not beyond_noise(problem, solution.theta):
         return tuple(missed), Noticed("left-out-why")
@@ -120,11 +121,12 @@ def unsteady(problem: FitProblem, theta: Array) -> list[Noticed]:
 
 
 def failed(problem: FitProblem, theta: Array) -> Noticed | None:
-    """What is mended first where no interval can be trusted: a start, or residuals far beyond the log's noise."""
+    """What is mended first where no interval can be trusted: a start, residuals far beyond noise, a sensor."""
     if unsteady(problem, theta):
         return Noticed("unsteady-cure")
-    far = any(np.sqrt(np.mean(part**2)) > FAR for part in in_noise(problem, theta) if part.size)
-    return Noticed("far-off-cure") if far else None
+    if any(np.sqrt(np.mean(part**2)) > FAR for part in in_noise(problem, theta) if part.size):
+        return Noticed("far-off-cure")
+    return Noticed("offset-cure") if far_off(problem, theta) else None
 
 
 def closing(

@@ -21,7 +21,7 @@ from thermicon.base.numbers.arrays import Array
 
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from .forward import START_SD_K, Prediction, predict
+from .forward import Prediction, predict, start_sd_K
 from .keys import FitError, FitKey, value_of
 from .runs import DISPLAY, Channel, Run
 from .whiten import CommonErrors, shared
@@ -260,7 +260,7 @@ def _along(runs: Sequence[Run], offset_sd_K: float) -> list[Unknown]:
         if run.phase is not None:
             extra.append(Unknown("phase", r, 0, 1.0, low=-PHASES, high=PHASES, step=1e-2))
         if run.start_C is not None:
-            extra.append(Unknown("start", r, 0, START_SD_K))
+            extra.append(Unknown("start", r, 0, start_sd_K(offset_sd_K)))
         for clock in range(1, len(run.clocks) + 1):
             extra += [
                 Unknown("shift", r, clock, SHIFT_ROOM_S, low=-SHIFT_ROOM_S, high=SHIFT_ROOM_S),

@@ -21,7 +21,7 @@ from ..rig.uncertainty import Uncertainty
 from .identify import FittedParameter
 from .keys import FitError, FitKey
 from .overlay import OverlaidColumn
-from .problem import FitProblem
+from .problem import OFFSET_SD_K, FitProblem
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,7 +46,8 @@ class RigFit(Tabled):
     the order in which they were named, `correlation` (keys, keys) is that of the fitted numbers; `sources` are name and
     SHA-256 of every log, `notes` sentences on columns, clocks, sensors and the fit. `converged`: it came to rest.
     `misfit`: residuals exceed the noise of the logs, or a sensor is off by more than 3 standard deviations; the
-    uncertainty of `rig` is then never narrower than before. `fitted_layers` names the layers that were fitted along.
+    uncertainty of `rig` is then never narrower than before. `fitted_layers` names the layers that were fitted along;
+    intervals hold for sensors that are off by `offset_sd_K` (SD).
     """
 
     rig: Rig
@@ -58,6 +59,7 @@ class RigFit(Tabled):
     converged: bool
     misfit: bool = False
     fitted_layers: tuple[str, ...] = ()
+    offset_sd_K: float = OFFSET_SD_K
 
     def __repr__(self) -> str:
         parts = [f"{item.key} = {item.value:.4g} {item.unit} {item.interval}" for item in self.parameters]

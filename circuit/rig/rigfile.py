@@ -15,6 +15,7 @@ from .faults import PARAMETERS, KeyTable, sentence, unit_of
 from .module import Datasheet
 from .rules import faults_of
 from .uncertainty import Uncertainty
+from .usual import likely_unit
 
 
 class RigError(InputError):
@@ -252,7 +253,7 @@ def read_table(document: Mapping[str, Any], where: str) -> RigTable:
     try:
         return RigTable.model_validate(dict(document))
     except ValidationError as problem:
-        faults = key_faults(problem, _nearest, unit_of)
+        faults = key_faults(problem, _nearest, unit_of, likely_unit=likely_unit)
         raise RigError("\n".join(f"{where}: {fault}" for fault in faults)) from None
 
 
@@ -286,10 +287,13 @@ def unknown_key(key: str) -> str:
 
 
 def _nearest(parts: Place) -> str:
+    if any("." in str(part) for part in parts):
+        return "names in quotes belong in [source]; write keys without them"
     key = ".".join("0" if isinstance(part, int) else part for part in parts)
     known = set(rig_keys()) | {known.rpartition(".")[0] for known in rig_keys() if "." in known}
     place, dot, name = key.rpartition(".")
     beside = [other.rpartition(".")[2] for other in known if other.rpartition(".")[0] == place]
     if close := proposals(name, beside, 2, 0.6):
-        return f"did you mean {' or '.join(place + dot + other for other in close)}?"
+        inside = "".join(f"{part}." for part in parts[:-1])
+        return f"did you mean {' or '.join(inside + other for other in close)}?"
     return did_you_mean(key, known if dot and place not in known else beside)

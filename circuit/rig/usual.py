@@ -32,7 +32,7 @@ def unusual_values(document: Mapping[str, Any]) -> Iterator[Unusual]:
         general = re.sub(r"\.\d+\.", ".0.", key)
         low, high, _ = usual.get(f"{general} of the {layer}", usual.get(general, (value, value, "")))
         if not low <= value <= high:
-            cure = _likely(value, unit, low, high)
+            cure = _likely(value, unit, low, high) or "check its unit"
             yield unusual("slip", key=name, value=value, unit=unit, low=low, high=high, cure=cure)
 
 
@@ -49,10 +49,20 @@ def _numbers(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, 
                     yield from _numbers(each, f"{prefix}{name}.{place}.")
 
 
+def likely_unit(key: str, value: float) -> str:
+    """The other unit in which an impossible value of a key would be usual, in words; empty where there is none.
+
+    >>> likely_unit("skin.rest_C", 89.6), likely_unit("skin.rest_C", 45.5)
+    ('89.6 looks like °F, 32 °C', '')
+    """
+    low, high, _ = usual_values().get(re.sub(r"\.\d+\.", ".0.", key), (value, value, ""))
+    return "" if low <= value <= high else _likely(value, unit_of(key), low, high)
+
+
 def _likely(value: float, unit: str, low: float, high: float) -> str:
-    """What to do about an unusual value: the first other unit in which it is usual, or else a question."""
+    """The first other unit in which a value is usual, in words; empty where there is none."""
     for other, (zero, size) in shipped_table(USUAL_VALUES)["units"].get(unit, {}).items():
         ours = size * (value - zero)
         if low <= ours <= high:
             return f"{value:.4g} looks like {other}, {ours:.4g} {unit}"
-    return "check its unit"
+    return ""

@@ -60,6 +60,7 @@ class CurrentPlant(Plant[CurrentPlay, State]):
     ensemble: Ensemble
     _rests: dict[CurrentPlay, State] = field(default_factory=dict)
     _maps: dict[CurrentPlay, PlayMap] = field(default_factory=dict)
+    _passed: dict[CurrentPlay, tuple[float, PlayMap]] = field(default_factory=dict)
     endings = ENDINGS
     quick = False
 
@@ -88,8 +89,7 @@ class CurrentPlant(Plant[CurrentPlay, State]):
 
     def now(self, play: CurrentPlay, state: State) -> Array:
         """WATCHED (4, corners) of states."""
-        pairs = list(zip(self.ensemble.networks, state.nodes_C, strict=True))
-        return np.array([[network.read(nodes, name) for network, nodes in pairs] for name in WATCHED])
+        return self.ensemble.read(state)
 
     def play(self, play: CurrentPlay, state: State) -> Iterator[tuple[Stretch, State]]:
         """The drive in stretches."""
@@ -97,16 +97,15 @@ class CurrentPlant(Plant[CurrentPlay, State]):
 
     def hold(self, play: CurrentPlay, state: State, times_s: Array) -> Array:
         """The resting current held."""
-        return self.ensemble.hold(play.rest_A, state, times_s)[0]
+        return self.ensemble.watch(play.rest_A, state, times_s, self.ensemble.lanes)
 
     def let_go(self, play: CurrentPlay, state: State) -> Iterator[tuple[Future, ...]]:
         """The last current held, zero current, and power off, which is the same."""
-        last_A = play.drive.current_A[..., -1]
-        held, _ = self.ensemble.hold(last_A if last_A.ndim else float(last_A), state, ENDING_ROWS_S)
+        last_A, lanes = play.drive.current_A[..., -1], self.ensemble.lanes
+        held = self.ensemble.watch(last_A if last_A.ndim else float(last_A), state, ENDING_ROWS_S, lanes)
         yield (Future((ENDING_ROWS_S, held)),)
-        zero = Future((ENDING_ROWS_S, self.ensemble.hold(0.0, state, ENDING_ROWS_S)[0]))
-        later, _ = self.ensemble.hold(0.0, state, np.append(0.0, LATE_S))
-        yield zero, Future((LATE_S, later[:, :, 1:]), drift=True)
+        zero = Future((ENDING_ROWS_S, self.ensemble.watch(0.0, state, ENDING_ROWS_S, lanes)))
+        yield zero, Future((LATE_S, self.ensemble.watch(0.0, state, LATE_S, lanes)), drift=True)
         yield (zero,)
 
     def after(self, play: CurrentPlay, pause_s: float, state: State) -> State:
@@ -118,7 +117,10 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         """A play and its pause as a map of the nodes."""
         if pause_s <= 0:
             return self._map(play)
-        return self._map(play).then(PlayMap(*self.ensemble.modes(play.rest_A).passage(pause_s)))
+        if self._passed.get(play, (0.0, None))[0] != pause_s:  # of one pause: those of all would take memory
+            passed = self._map(play).then(PlayMap(*self.ensemble.modes(play.rest_A).passage(pause_s)))
+            self._passed[play] = pause_s, passed
+        return self._passed[play][1]
 
     def _map(self, play: CurrentPlay) -> PlayMap:
         if play not in self._maps:
@@ -220,8 +222,5 @@ def single_of_lanes(ensemble: Ensemble, drives: LaneDrives, limits: Limits) -> S
 
 def zero_current_C(ensemble: Ensemble) -> Array:
     """WATCHED (4, corners) that zero current leads to without limit of time."""
-    steady_C = np.full((len(WATCHED), len(ensemble.corners)), HOTTEST_C)
-    for lane, network in enumerate(ensemble.networks):
-        state = state_under_current(network, 0.0, in_the_end=True)
-        steady_C[:, lane] = [network.read(state, name) for name in WATCHED]
-    return steady_C
+    steady = [state_under_current(network, 0.0, in_the_end=True) for network in ensemble.networks]
+    return ensemble.read(State(ensemble.bank.states(steady)))

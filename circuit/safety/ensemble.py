@@ -15,10 +15,10 @@ from thermicon.base.numbers.arrays import Array, Index
 
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..solver.batch_inputs import Bank, Intervals, State, cut, left_over, run_on
+from ..solver.batch_inputs import Bank, Intervals, State, cut, run_on
 from ..solver.drive import Drive, DriveError
 from ..solver.modes import ConstantCurrent
-from ..solver.network import Network, network_of
+from ..solver.network import RECORDED, Network, network_of
 from ..solver.steady import state_under_current, steady_of
 from .corners import Corner, corners_of
 from .plant import Stretch
@@ -101,6 +101,14 @@ class Ensemble:
             hottest[-1] = network.deep_C
             return hottest
 
+    def read(self, state: State) -> Array:
+        """WATCHED (4, corners) of states."""
+        which = [RECORDED.index(name) for name in WATCHED]
+        nodes = np.delete(state.nodes_C, -2, axis=1) if self.bank.passive else state.nodes_C  # without the heat sink
+        places = self.bank.probe_start[:, which, np.newaxis] + np.arange(3)
+        near_C = np.take_along_axis(nodes[:, np.newaxis], places, axis=2)
+        return np.asarray((self.bank.probe_weight[:, which] * near_C).sum(axis=2).T)
+
     def play(
         self, drive: Drive | LaneDrives, state: State, rigs: Index | None = None
     ) -> Iterator[tuple[Stretch, State]]:
@@ -116,9 +124,7 @@ class Ensemble:
             rows[-1] = min(rows[-1], end)
             part = between(drive, float(rows[0]), float(rows[-1]))
             intervals = self._cut(rows - rows[0], part)
-            # Lanes of a block share their steps, and those of LaneDrives each jump by themselves.
-            alone = len(which) if isinstance(drive, LaneDrives) else left_over(len(which))
-            values, state = run_on(self.bank, which, which, intervals, state, WATCHED, alone=alone)
+            values, state = run_on(self.bank, which, which, intervals, state, WATCHED)
             yield (rows, values), state
 
     def end_of(self, drive: Drive | LaneDrives, state: State, rigs: Index | None = None) -> State:
@@ -126,7 +132,7 @@ class Ensemble:
         which = self.lanes if rigs is None else rigs
         end = float(drive.time_s[-1])
         intervals = self._cut(np.array([0.0, end]), drive)
-        return run_on(self.bank, which, which, intervals, state, WATCHED[:1], alone=left_over(len(which)))[1]
+        return run_on(self.bank, which, which, intervals, state, WATCHED[:1])[1]
 
     def _cut(self, rows_s: Array, drive: Drive | LaneDrives) -> Intervals:
         """A drive cut into intervals, scaled in each corner; where it has means, with the heat of what switches."""
@@ -171,7 +177,7 @@ class Ensemble:
         begin, end = (mean, mean) if self.bridge_A is None else switching(mean, self.bridge_A * self.gain[rigs])
         intervals = Intervals(times_s, np.arange(len(times_s)), np.ascontiguousarray(begin), np.ascontiguousarray(end))
         lanes = np.arange(len(rigs), dtype=np.int64)
-        return run_on(self.bank, rigs, lanes, intervals, state, WATCHED, alone=left_over(len(rigs)))
+        return run_on(self.bank, rigs, lanes, intervals, state, WATCHED)
 
 
 def row_of(drive: Drive | LaneDrives) -> float:

@@ -5,7 +5,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cache, partial
 from typing import Generic
 
 import numpy as np
@@ -97,6 +97,7 @@ class Repeating(Generic[Played, States]):
     drives: Sequence[Sequence[Played]]
     limits: Limits
     _known: dict[float, list[list[Tally]]] = field(default_factory=dict)
+    _bounds: dict[float, tuple[list[States], States, States]] = field(default_factory=dict)
 
     @property
     def plays(self) -> list[Played]:
@@ -111,9 +112,11 @@ class Repeating(Generic[Played, States]):
 
     def bounds(self, pause_s: float) -> tuple[list[States], States, States]:
         """States before plays with a pause between them: of each steady cycle, and the warm and the cold bound."""
-        steady = [self.plant.cycle(play, pause_s) for play in self.plays]
-        warm, cold = (self.plant.bound(self.plays, pause_s, steady, side) for side in (True, False))
-        return steady, warm, cold
+        if pause_s not in self._bounds:
+            steady = [self.plant.cycle(play, pause_s) for play in self.plays]
+            warm, cold = (self.plant.bound(self.plays, pause_s, steady, side) for side in (True, False))
+            self._bounds[pause_s] = steady, warm, cold
+        return self._bounds[pause_s]
 
     def _tallies(self, pause_s: float, endings: bool) -> Iterator[list[Tally]]:
         plant, plays = self.plant, self.plays
@@ -168,20 +171,21 @@ def plays_in(play: GatePlay, pause_s: float, session_s: float) -> int:
 
 
 def shortest_pause_s(repeating: Repeating[Played, States]) -> float | None:
-    """The shortest safe pause in s, to 0.1 s; None up to 10 min. Searched in the worst corners, and checked in all."""
-    deciding, pause_s = set[int](), 0.0
+    """The shortest safe pause in s, to 0.1 s; None up to 10 min. Searched in corners that fail, and checked in all."""
+    known, safe_in, pause_s = set[int](), list[Callable[[float], bool]](), 0.0
     while True:
-        worst = set(range(len(repeating.plant.corners)))
+        failing = set(range(len(repeating.plant.corners)))
         with suppress(UnjudgedError):
             tallies = [tally for drive_tallies in repeating.tallies(pause_s) for tally in drive_tallies]
             if all(tally.passes() for tally in tallies):
                 return pause_s
-            worst = {corner for tally in tallies for corner in tally.worst_lanes()}
-        if worst <= deciding:
+            failing = {corner for tally in tallies for corner in tally.worst_lanes()}
+        if failing <= known:
             break
-        deciding |= worst
-        few = Repeating(repeating.plant.only(sorted(deciding)), repeating.drives, repeating.limits)
-        found_s = shortest_of(partial(few.safe, endings=False))
+        few = Repeating(repeating.plant.only(sorted(failing - known)), repeating.drives, repeating.limits)
+        safe_in.append(cache(partial(few.safe, endings=False)))
+        known |= failing
+        found_s = shortest_of(lambda pause_s: all(safe(pause_s) for safe in safe_in))
         if found_s is None:
             return None
         pause_s = found_s

@@ -67,8 +67,9 @@ class Tally:
         if self._begun is None:
             begun = np.nan_to_num(watched[0, :, 0], nan=HOTTEST_C, posinf=HOTTEST_C, neginf=COLDEST_C)
             self._begun = np.clip(begun, COLDEST_C, HOTTEST_C)
+        times = np.require(time_s, requirements="W")  # numba compiles everything again for times that are read-only
         count(
-            time_s, np.ascontiguousarray(watched), self._code, self._above_C, constants(), SPAN_C, LEVEL,
+            times, np.ascontiguousarray(watched), self._code, self._above_C, constants(), SPAN_C, LEVEL,
             float(self.plays), self._rule_of, self._limit, self._relative, self._upper, self._hard, rates, sums, drift,
             self._begun, self._sums, self._present, self._value, self._at_s, self._since_s,
         )  # fmt: skip
@@ -99,8 +100,9 @@ class Tally:
         return np.asarray(self._sums[self._rule_of[place]])
 
     def worst_lanes(self) -> tuple[int, ...]:
-        """Lanes that are worst by some hard rule, each once."""
-        return tuple(dict.fromkeys(self._worst()[self._present & self._hard].tolist()))
+        """Lanes that are worst by some hard rule that is exceeded, each once."""
+        exceeded = ~np.isnan(self._since_s).all(axis=1)
+        return tuple(dict.fromkeys(self._worst()[self._hard & exceeded].tolist()))
 
     def beyond(self) -> Array:
         """Excess over each rule in each lane (rules, lanes), as `checks.beyond` of its check."""

@@ -121,20 +121,16 @@ def simulate_many(
     if len({rig.driver.update_Hz for rig in (*on, nominal)}) > 1:
         raise RigError("rigs of one batch must share driver.update_Hz")
     rows = rows_until(end_s, rate_Hz)
-    values = np.empty((len(probes), len(on), len(icons), len(rows)))
     stage = _Stage(on, nominal, end_s, rows, tuple(probes), Bank.of([network_of(rig) for rig in on]))
     groups: dict[tuple[str, str], list[int]] = {}
     for place, icon in enumerate(icons):
         groups.setdefault((icon.context.control, tracking or usual_tracking(icon)), []).append(place)
-    for (control, way), places in groups.items():
-        cues = [icons[place] for place in places]
-        if control == "current":
-            for place, cue in zip(places, cues, strict=True):
-                values[:, :, place] = stage.play_corners(cue)
-        elif way == "replay":
-            values[:, :, places] = stage.replay(cues)
-        else:
-            values[:, :, places] = stage.track(cues, control, way)
+    played = [(places, stage.play([icons[place] for place in places], *how)) for how, places in groups.items()]
+    if len(played) == 1:  # most sets: a copy would be as large as all else
+        return Batch(rows, tuple(probes), played[0][1])
+    values = np.empty((len(probes), len(on), len(icons), len(rows)))
+    for places, found in played:
+        values[:, :, places] = found
     return Batch(rows, tuple(probes), values)
 
 
@@ -148,6 +144,12 @@ class _Stage:
     rows: Array
     probes: tuple[str, ...]
     bank: Bank
+
+    def play(self, icons: Sequence[Icon], control: str, way: str) -> Array:
+        """Icons of one control that are tracked alike, on every rig: (probes, rigs, icons, rows)."""
+        if control == "current":
+            return np.stack([self.play_corners(icon) for icon in icons], axis=2)
+        return self.replay(icons) if way == "replay" else self.track(icons, control, way)
 
     def play_corners(self, icon: Icon) -> Array:
         """A current-controlled cue, designed on the nominal rig, on every rig: (probes, rigs, rows)."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -14,18 +15,52 @@ from thermicon.base.numbers.cores import cores
 
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from .network import RECORDED, Network, network_of
+from .network import DEEP_C, RECORDED, SKIN, ModalRigs, Network, network_of
+
+VECTOR = 16
+"""Modes are padded to a multiple of this with modes that do nothing, since loops over whole vectors are quicker."""
 
 
-@dataclass(frozen=True, slots=True)
-class Bank:
-    """Networks of r rigs, padded to the most lumps n: `count` (r,), the rest (r, …) as in Network."""
+@dataclass(frozen=True, eq=False)
+class SkinsOfBank:
+    """Skins of r rigs, padded to the most lumps n: `count` (r,), the rest (r, n or n + 1) as in `Network`."""
 
     count: Index
-    plates: Array
     capacity: Array
     conductance: Array
     perfusion: Array
+
+    @cached_property
+    def modes(self) -> tuple[Array, Array, Array, Array]:
+        """Rates (r, n) in 1/s, weights of the modes in the first lump, and matrices from lumps to modes and back.
+
+        Lumps are in K above the deep node. With C the capacities and K the conductances, C^(−1/2)·K·C^(−1/2) is
+        symmetric. Its modes do not depend on the current, and what is padded has none of the weight.
+        """
+        from scipy.linalg import eigh_tridiagonal
+
+        rigs, most = self.capacity.shape
+        width = most + -most % VECTOR
+        rates, to_modes, from_modes = (
+            np.zeros((rigs, width)),
+            np.zeros((rigs, width, most)),
+            np.zeros((rigs, most, width)),
+        )
+        for rig, n in enumerate(self.count):
+            g, root = self.conductance[rig, : n + 1], np.sqrt(self.capacity[rig, :n])
+            diagonal = (g[:-1] + g[1:] + self.perfusion[rig, :n]) / self.capacity[rig, :n]
+            between = -g[1:-1] / (root[1:] * root[:-1])
+            rates[rig, :n], vectors = eigh_tridiagonal(diagonal, between, check_finite=False)
+            to_modes[rig, :n, :n], from_modes[rig, :n, :n] = vectors.T * root, vectors / root[:, np.newaxis]
+        return rates, from_modes[:, 0].copy(), to_modes, from_modes
+
+
+@dataclass(frozen=True, eq=False)
+class Bank:
+    """Networks of r rigs: `plates`, `probe_start`, `probe_weight`, `face_share` (r, …) as in `Network`."""
+
+    skins: SkinsOfBank
+    plates: Array
     probe_start: Index
     probe_weight: Array
     face_share: Array
@@ -48,12 +83,10 @@ class Bank:
                 row[: len(values)] = values
             return rows
 
+        widths = (("capacity_J_per_K", 0), ("conductance_W_per_K", 1), ("perfusion_W_per_K", 0))
         return Bank(
-            count,
+            SkinsOfBank(count, *(padded(name, extra) for name, extra in widths)),
             np.array([network.plates for network in networks]),
-            padded("capacity_J_per_K", 0),
-            padded("conductance_W_per_K", 1),
-            padded("perfusion_W_per_K", 0),
             np.array([network.probe_start for network in networks]),
             np.array([network.probe_weight for network in networks]),
             np.array([network.face_share for network in networks]),
@@ -61,20 +94,40 @@ class Bank:
         )
 
     @property
-    def arrays(self) -> tuple[Index, Array, Array, Array, Array]:
-        """The arrays of a bank for the kernels."""
-        return self.count, self.plates, self.capacity, self.conductance, self.perfusion
+    def modal(self) -> ModalRigs:
+        """The rigs as the kernels step them."""
+        skins = self.skins
+        return ModalRigs(skins.count, *skins.modes, skins.conductance[:, 0].copy(), self.plates)
+
+    @cached_property
+    def recorded(self) -> Array:
+        """The readings of RECORDED, see `readings`."""
+        return self.readings(self.probe_start, self.probe_weight)
+
+    def readings(self, start: Index, weight: Array) -> Array:
+        """Weights (r, k, 3 + modes) of 1, both plates and the modes in readings that begin at `start` (r, k).
+
+        `weight` (r, k, 3) are those of three neighbouring states, as in `Network`.
+        """
+        rigs, probes = start.shape
+        states = np.zeros((rigs, probes, self.skins.capacity.shape[1] + SKIN + 1))
+        places = (start[:, :, np.newaxis] + np.arange(3)).clip(max=states.shape[2] - 1)
+        np.put_along_axis(states, places, weight, axis=2)
+        lumps, deep_C = states[:, :, SKIN:], self.plates[:, DEEP_C, np.newaxis, np.newaxis]
+        constant = lumps.sum(axis=2, keepdims=True) * deep_C
+        return np.concatenate([constant, states[:, :, :SKIN], lumps[:, :, :-1] @ self.skins.modes[3]], axis=2)
 
     def states(self, states: Sequence[Array]) -> Array:
         """Stack starting states, one per lane, padded to (lanes, nodes)."""
-        rows = np.zeros((len(states), self.capacity.shape[1] + self.passive + 3))
+        rows = np.zeros((len(states), self.skins.capacity.shape[1] + self.passive + SKIN + 1))
         for row, state in zip(rows, states, strict=True):
             row[: len(state)] = state
         return rows
 
 
+@lru_cache(maxsize=64)
 def bank_of(rig: Rig) -> Bank:
-    """A bank of one rig."""
+    """A bank of one rig, which is kept: fits, sliders and sets play one rig again and again."""
     return Bank.of([network_of(rig)])
 
 
@@ -129,28 +182,26 @@ class State:
 
 def run_on(
     bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: State, probes: Sequence[str] = RECORDED,
-    extra: tuple[Index, Array] | None = None, *, alone: int = 0,
+    extra: tuple[Index, Array] | None = None,
 ) -> tuple[Array, State]:  # fmt: skip
-    """`run_forward` from any states, also returns those at the end; the last `alone` lanes have their own steps."""
+    """`run_forward` from any states; also returns those at the end."""
     from .kernel import forward
 
-    which = [RECORDED.index(probe) for probe in probes]
-    places = np.ascontiguousarray(bank.probe_start[:, which])
-    weights = np.ascontiguousarray(bank.probe_weight[:, which])
+    readings = np.ascontiguousarray(bank.recorded[:, [RECORDED.index(probe) for probe in probes]])
     if extra is not None:
-        rigs = len(places)
-        places = np.concatenate([places, np.repeat(extra[0][np.newaxis], rigs, axis=0)], axis=1)
-        weights = np.concatenate([weights, np.repeat(extra[1][np.newaxis], rigs, axis=0)], axis=1)
-    out = np.empty((places.shape[1], len(rig_of), int(intervals.row_of.max()) + 1))
-    final = np.zeros_like(state.nodes_C)
+        start, weight = extra
+        own = bank.readings(np.tile(start, (len(readings), 1)), np.tile(weight, (len(readings), 1, 1)))
+        readings = np.concatenate([readings, own], axis=1)
+    out = np.empty((readings.shape[1], len(rig_of), int(intervals.row_of.max()) + 1))
+    final, rigs_of_bank = np.zeros_like(state.nodes_C), bank.modal
 
-    def work(wide: tuple[int, ...], blocks: Index) -> None:
+    def work(lanes: Index) -> None:
         forward(
-            wide, blocks, rig_of, cue_of, intervals.edges_s, intervals.start_A, intervals.end_A, intervals.row_of,
-            bank.arrays, places, weights, state.nodes_C, out, final,
+            lanes, rig_of, cue_of, intervals.edges_s, intervals.start_A, intervals.end_A, intervals.row_of,
+            rigs_of_bank, readings, state.nodes_C, out, final,
         )  # fmt: skip
 
-    _in_blocks(work, len(rig_of), len(intervals.edges_s), alone)
+    _every_lane(work, len(rig_of), len(intervals.edges_s))
     return out, State(final)
 
 
@@ -187,41 +238,22 @@ def _run_periods(
     shape = (len(rig_of), given[2].shape[1])
     current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
 
-    def work(wide: tuple[int, ...], blocks: Index) -> None:
-        kernel(wide, blocks, rig_of, *given, bank.arrays, state, current, reached, why)
+    rigs = bank.modal
 
-    _in_blocks(work, len(rig_of))
+    def work(lanes: Index) -> None:
+        kernel(lanes, rig_of, *given, rigs, state, current, reached, why)
+
+    _every_lane(work, len(rig_of), SHORT)
     return current, reached, why
 
-
-FEWEST = 4
-"""Fewer lanes than this run one at a time, more in padded blocks, where a lane's steps are the same in any batch."""
 
 SHORT = 100_000
 """Lanes times intervals below which starting a thread takes longer than the work."""
 
 
-def left_over(lanes: int) -> int:
-    """How many lanes after the last whole block are quicker alone, since a block takes as long as eight of them."""
-    from .kernel import MANY
-
-    beyond = lanes % len(MANY)
-    return beyond if beyond < len(MANY) // 2 else 0
-
-
-def _in_blocks(
-    work: Callable[[tuple[int, ...], Index], None], lanes: int, intervals: int = SHORT, alone: int = 0
-) -> None:
-    """Run lanes in padded blocks that do not depend on the number of cores; the last `alone`, or a few, one by one."""
-    from .kernel import MANY, ONE
-
-    together, width = 0 if lanes < FEWEST else lanes - alone, len(MANY)
-    if together:
-        padded = np.minimum(np.arange(-(-together // width) * width, dtype=np.int64), together - 1)
-        used = None if lanes * intervals >= SHORT else 1
-        on_all_cores(lambda blocks: work(MANY, blocks), padded.reshape(-1, width), used)
-    if together < lanes:
-        work(ONE, np.arange(together, lanes, dtype=np.int64)[:, np.newaxis])
+def _every_lane(work: Callable[[Index], None], lanes: int, intervals: int) -> None:
+    """Run lanes, each by itself, on all cores where that is worth it."""
+    on_all_cores(work, np.arange(lanes, dtype=np.int64), None if lanes * intervals >= SHORT else 1)
 
 
 def on_all_cores(work: Callable[[Index], None], lanes: Index, most: int | None = None) -> None:

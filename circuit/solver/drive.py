@@ -15,6 +15,7 @@ from thermicon.base.checks.arguments import checked
 from thermicon.base.files.inputs import InputError, read_bytes, table_fault
 from thermicon.base.files.measured_table import measured, missing
 from thermicon.base.files.table import read_table
+from thermicon.base.files.units import like_units_of_time
 from thermicon.base.numbers.arrays import Array
 
 from ..rig.module import ZERO_C_IN_K, Peltier
@@ -63,7 +64,7 @@ class Drive:
     current_A: Array
     held: bool = False
 
-    def __init__(self, time_s: Sequence[float] | Array, current_A: Sequence[float] | Array, held: bool = False) -> None:
+    def __init__(self, time_s: Array | Sequence[float], current_A: Array | Sequence[float], held: bool = False) -> None:
         times, currents = np.array(time_s, dtype=np.float64), np.array(current_A, dtype=np.float64)
         for array in (times, currents):
             array.setflags(write=False)
@@ -161,7 +162,9 @@ def read_drive(path: str | Path, hold: bool = False, columns: Mapping[str, str] 
     try:
         return Drive(times, found.columns["current_A"], hold)
     except DriveError as problem:
-        raise DriveError(f"{where}: {problem}") from None
+        like = None if found.clocked else like_units_of_time(times, whole=False)
+        cure = f"these look like {like[0]}; {like[1]} to have s" if like else "check the unit of the times"
+        raise DriveError(f"{where}: {problem}; {cure}") from None
 
 
 SIMULATED_CARRIER_HZ = 500.0

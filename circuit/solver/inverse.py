@@ -141,7 +141,7 @@ def _designs(icons: Sequence[Icon], rig: Rig, control: str, end_s: float) -> lis
     designs = []
     for icon, base, target, start, currents, reached, why in zip(icons, bases, targets, begun, *results, strict=True):
         outcome = judge(target, reached, period, _limits(why, period), steps_at(icon, base))
-        drive = Drive([0.0, *ends], [*currents, currents[-1]], held=True)
+        drive = Drive(np.append(0.0, ends), np.append(currents, currents[-1]), held=True)
         designs.append(Design(drive, rest[base][0], start, outcome))
     return designs
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..rig.module import ZERO_C_IN_K
 from . import network as net
-from .kernel import COLD_SHARE, LONGEST_STEP_S, LUMPS, PLATES, WEIGHT, advance, begin, compiled, factor, room, weighed
+from .kernel import ANSWER, LONGEST_STEP_S, NEXT, SHARE, WEIGHT, advance, begin, compiled, factor, plates_after, weighed
 from .plates import current_for_heat_A, greatest_cooling_A
 
 greatest_cooling = compiled(greatest_cooling_A)
@@ -67,9 +67,7 @@ def wanted(target, share, z0, elim0, g0, period, hot, cold, sink, guess, p):
 
 
 @compiled
-def follow(
-    wide, blocks, rig_of, cue_of, period, target, face_share, bank, state, current_out, reached, why,
-):  # fmt: skip
+def follow(lanes, rig_of, cue_of, period, target, face_share, rigs, state, current_out, reached, why):
     """Find the held current of every period that takes skin or display to its target at the period's end.
 
     `target` (cue, period) in °C; `face_share` (rig,) is the weight of the cold plate in what follows it, 1 for the
@@ -77,34 +75,32 @@ def follow(
     A, the controlled temperature °C at the period's end, and the code of what limited the current. The current comes
     from a damped prediction (one implicit step over the period); the state moves by the accurate rule.
     """
-    lanes = len(wide)
-    x, p, skin, sink, y, total, first = room(wide, bank)
-    rows, whole = np.empty((4, len(y), 2 * lanes)), np.empty((5, lanes))
-    period_rows, period_whole = np.empty((4, len(y), 2 * lanes)), np.empty((5, lanes))
-    current, squared, z0 = np.empty(lanes), np.empty(lanes), np.empty(lanes)
+    rates, touches = rigs.rate_per_s, rigs.touch
+    modes, factors, over_period = (
+        np.empty(rates.shape[1]), np.empty((4, rates.shape[1])), np.empty((4, rates.shape[1])),
+    )  # fmt: skip
     pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
     step = period / pieces
-    for b in range(blocks.shape[0]):
-        block = blocks[b]
-        h = begin(wide, block, rig_of, bank, state, x, p, skin, sink)
-        factor(wide, h, 0.5 * step, p, skin, rows, whole)
-        factor(wide, h, period, p, skin, period_rows, period_whole)
-        weighed(wide, h, rows[WEIGHT], x, first)
-        current.fill(0.0)
+    for lane in lanes:
+        r, c = rig_of[lane], cue_of[lane]
+        p, g0, controlled, current = rigs.plates[r], rigs.first_W_per_K[r], face_share[r], 0.0
+        deep = p[net.DEEP_C]
+        hot, cold, sink = begin(lane, r, rigs, state, p, modes)
+        whole = factor(0.5 * step, rates[r], touches[r], g0, p, factors)
+        elim = factor(period, rates[r], touches[r], g0, p, over_period)[SHARE]
+        first, then = weighed(factors[WEIGHT], modes), weighed(factors[NEXT], modes)
         for k in range(target.shape[1]):
-            weighed(wide, h, period_rows[WEIGHT], x, z0)
-            for lane in range(lanes):
-                share, elim, deep = face_share[rig_of[block[lane]]], period_whole[COLD_SHARE, lane], p[net.DEEP_C, lane]
-                amperes, code = wanted(
-                    target[cue_of[block[lane]], k], share, z0[lane] + deep * (1.0 - elim), elim, skin[1, 0, lane],
-                    period, x[PLATES, lane] + deep, x[PLATES, lanes + lane] + deep, sink[lane],
-                    current[lane], p[:, lane],
-                )  # fmt: skip
-                current[lane], squared[lane] = amperes, amperes * amperes
-                current_out[block[lane], k], why[block[lane], k] = amperes, code
+            z0 = weighed(over_period[WEIGHT], modes) + deep * (1.0 - elim)
+            current, why[lane, k] = wanted(target[c, k], controlled, z0, elim, g0, period, hot, cold, sink, current, p)
+            current_out[lane, k] = current
             for _ in range(pieces):
-                advance(wide, h, step, current, squared, p, skin[1, 0], x, y, total, first, sink, rows, whole)
-            for lane in range(lanes):
-                share = face_share[rig_of[block[lane]]]
-                face = share * x[PLATES, lanes + lane] + (1.0 - share) * x[LUMPS, lane]
-                reached[block[lane], k] = face + p[net.DEEP_C, lane]
+                hot_mid, cold_mid, sink_mid = plates_after(
+                    whole, hot, cold, sink, first, current, current * current, g0, 0.5 * step, p
+                )
+                hot, cold, sink = 2.0 * hot_mid - hot, 2.0 * cold_mid - cold, 2.0 * sink_mid - sink
+                above = cold_mid - deep
+                first = then + whole[ANSWER] * above
+                then = advance(modes, factors, above)
+            reached[lane, k] = controlled * cold
+            if controlled < 1.0:
+                reached[lane, k] += (1.0 - controlled) * (weighed(touches[r], modes) + deep)

@@ -7,6 +7,7 @@ that has one, deep node (constant), all in °C.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -101,6 +102,18 @@ class Network:
         if self.passive:
             state_C = np.append(state_C[: SKIN + len(self.capacity_J_per_K)], state_C[-1])
         return float(self.probe_weight[row] @ state_C[start : start + 3])
+
+
+class ModalRigs(NamedTuple):
+    """r rigs for the kernels: how many `lumps` (r,), skins of m modes as in `SkinsOfBank`, and `plates`."""
+
+    lumps: Index
+    rate_per_s: Array
+    touch: Array
+    to_modes: Array
+    from_modes: Array
+    first_W_per_K: Array
+    plates: Array
 
 
 @lru_cache(maxsize=512)

@@ -49,17 +49,20 @@ def current_for_heat_A(
 ) -> float:
     """Smaller current in A that absorbs `heat` (W); `greatest` where the module cannot absorb that much.
 
-    The smaller root of αT_c·I − I²R/2 = heat + (T_h(I) − T_c)/Θ, with T_h from the previous iterate, from `guess` (A)
-    until it moves by less than `close` (A).
+    The smaller root of αT_c·I − I²R/2 = heat + (T_h(I) − T_c)/Θ, from `guess` (A) until it moves by less than `close`
+    (A): by Newton's steps on I = f(I), where f takes T_h from the current before.
     """
     half = alpha * (cold + ZERO_C_IN_K)
     current = guess
     for _ in range(60):
-        hot = (base + alpha * current * ZERO_C_IN_K + 0.5 * ohm * current * current) / (total - alpha * current)
+        around = 1.0 / (total - alpha * current)
+        hot = (base + alpha * current * ZERO_C_IN_K + 0.5 * ohm * current * current) * around
         root = half * half - 2.0 * ohm * (heat + leak * (hot - cold))
         if root < 0.0:
             return greatest
-        better = (half - math.sqrt(root)) / ohm
+        root = math.sqrt(root)
+        slope = leak * (alpha * (hot + ZERO_C_IN_K) + ohm * current) * around / root
+        better = current + ((half - root) / ohm - current) / (1.0 - slope)
         if better > greatest:
             return greatest
         if abs(better - current) < close:

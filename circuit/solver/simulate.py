@@ -12,7 +12,7 @@ from thermicon.icons import Icon
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import AnyRig, Rig
 from ..rig.rigfile import RigError
-from .batch_inputs import FEWEST, bank_of, cut, run_forward
+from .batch_inputs import bank_of, cut, run_forward
 from .displayed import play_display, refuse_current
 from .drive import Drive
 from .inverse import baseline_C, design, design_many, target_at
@@ -107,7 +107,7 @@ def simulate_all(icons: Sequence[Icon], rig: Rig, *, end_s: float, rate_Hz: floa
     """Traces of every cue of a set on one rig until a common end, as `simulate` gives them, in parallel."""
     module = rig.thermode is None and rig.controller is None
     alike = not rig.probes and module and all(icon.context.control != "current" for icon in icons)
-    if not alike or len(icons) < FEWEST:
+    if not alike:
         tails = [end_s - duration_s(icon, rig) for icon in icons]
         return tuple(simulate(cue, rig, rate_Hz=rate_Hz, tail_s=tail) for cue, tail in zip(icons, tails, strict=True))
     plans, rows, bank = design_many(icons, rig, end_s), rows_until(end_s, rate_Hz), bank_of(rig)

@@ -1,6 +1,7 @@
 """Steady states of the circuit."""
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -28,18 +29,16 @@ def _plates(network: Network, in_the_end: bool = False) -> tuple[float, float, f
     return alpha, ohm, leak, sink, out
 
 
-def _column(network: Network) -> tuple[Array, Array]:
+def _column(network: Network) -> tuple[list[float], list[float]]:
     """Return (z, e) with lump[i] = z[i] + e[i] · (the state above it) in steady state."""
-    g, perfusion, deep = network.conductance_W_per_K, network.perfusion_W_per_K, network.deep_C
-    n = len(perfusion)
-    z, e = np.empty(n), np.empty(n)
-    below_z, below_e = deep, 0.0
+    g, perfusion = network.conductance_W_per_K.tolist(), network.perfusion_W_per_K.tolist()  # quicker one by one
+    deep, n = network.deep_C, len(perfusion)
+    z, e = [deep] * (n + 1), [0.0] * (n + 1)
     for i in range(n - 1, -1, -1):
-        diagonal = g[i] + g[i + 1] * (1.0 - below_e) + perfusion[i]
-        z[i] = (perfusion[i] * deep + g[i + 1] * below_z) / diagonal
+        diagonal = g[i] + g[i + 1] * (1.0 - e[i + 1]) + perfusion[i]
+        z[i] = (perfusion[i] * deep + g[i + 1] * z[i + 1]) / diagonal
         e[i] = g[i] / diagonal
-        below_z, below_e = z[i], e[i]
-    return z, e
+    return z[:n], e[:n]
 
 
 def state_under_current(network: Network, current_A: float, in_the_end: bool = False) -> Array:
@@ -53,12 +52,12 @@ def state_under_current(network: Network, current_A: float, in_the_end: bool = F
         raise ArithmeticError(f"{current_A:g} A has no steady state on this rig: it heats without limit")
     cold = (leak * zero - alpha * current_A * ZERO_C_IN_K + 0.5 * ohm * current_A**2 + skin * z[0]) / diagonal
     hot = zero + per_cold * cold
-    state = np.empty(network.nodes)
-    state[net.HOT], state[net.COLD], state[-1] = hot, cold, network.deep_C
-    for i in range(len(z)):
-        state[net.SKIN + i] = z[i] + e[i] * state[net.COLD + i]
+    nodes = [hot, cold]
+    for offset, share in zip(z, e, strict=True):
+        nodes.append(offset + share * nodes[-1])
     if network.passive:
-        state[-2] = hot - out * (hot - sink) / float(network.plates[net.SINK_W_PER_K])
+        nodes.append(hot - out * (hot - sink) / float(network.plates[net.SINK_W_PER_K]))
+    state = np.array([*nodes, network.deep_C])
     state.setflags(write=False)
     return state
 
@@ -78,6 +77,7 @@ def holding_current_A(network: Network, control: str, level_C: float) -> float:
     return current_for_heat_A(heat, cold, base, total, alpha, ohm, leak, greatest, 0.0, 1e-13)
 
 
+@lru_cache(maxsize=256)
 def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
     """The current in A, and the temperatures (nodes,) in °C, read-only, that hold a baseline of `skin` or `display`.
 

@@ -65,7 +65,8 @@ def superposed(
     """
     from . import kernel_modes as kernel
 
-    rigs, cues = len(bank.count), len(display_C)
+    skins, cues = bank.skins, len(display_C)
+    rigs = len(skins.count)
     rig_of, cue_of = (place.ravel() for place in np.indices((rigs, cues)))
     which = [RECORDED.index(probe) for probe in probes]
     places, weights = map(np.ascontiguousarray, (bank.probe_start[:, which], bank.probe_weight[:, which]))
@@ -73,7 +74,7 @@ def superposed(
 
     def respond(part: Index) -> None:
         kernel.ramp_responses(
-            bank.count[part], bank.capacity[part], bank.conductance[part], bank.perfusion[part], period_s,
+            skins.count[part], skins.capacity[part], skins.conductance[part], skins.perfusion[part], period_s,
             places[part], weights[part], response[part[0] : part[-1] + 1],
         )  # fmt: skip
 
@@ -82,7 +83,7 @@ def superposed(
     near = places[rig_of][:, :, np.newaxis] + np.arange(3)
     begin = np.empty((len(lane), len(which) + 1))
     begin[:, :-1] = (weights[rig_of] * states[lane[:, np.newaxis, np.newaxis], near]).sum(axis=2)
-    begin[:, -1] = bank.conductance[rig_of, 0] * (states[:, SKIN] - states[:, COLD])
+    begin[:, -1] = skins.conductance[rig_of, 0] * (states[:, SKIN] - states[:, COLD])
     row_at = np.rint(rows_s / period_s).astype(np.int64)
     out, flow = np.empty((len(which), len(lane), len(row_at))), np.empty((len(lane), display_C.shape[1]))
     fine, hot_C = np.empty(len(lane), dtype=np.bool_), np.ascontiguousarray(states[:, HOT])

@@ -13,12 +13,13 @@ from thermicon.notebooks.cli.main import app
 
 MARK = re.compile(r"^<!-- picture: (?P<commands>[^|\n]+) \| (?P<alt>[^|\n]+) -->\n", re.MULTILINE)
 """Commands without `thermicon`, with `&&` between them; the last one draws. A code host shows nothing of it."""
+COLUMN = " --paper 85mm"
 SAVED = re.compile(r"Save as `(?P<name>[\w.-]+)`[^\n]*\n\n```\w*\n(?P<text>.*?)```", re.DOTALL)
 
 
 def command_lines(mark: re.Match[str]) -> list[str]:
-    """Return the commands of a mark; the last one draws."""
-    return f"{mark['commands']} --figure picture.png".split(" && ")
+    """Return the commands of a mark; the last one draws, for a column unless the mark says how wide."""
+    return f"{mark['commands']} --figure picture.png{COLUMN * ('--paper' not in mark['commands'])}".split(" && ")
 
 
 def page_picture(mark: re.Match[str], page: str, kept: Path) -> Path:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
-from page_pictures import MARK, command_lines, page_picture
+from page_pictures import COLUMN, MARK, command_lines, page_picture
 from pygments.lexers import get_lexer_by_name
 from sections import front_page, read_sections, with_toctree
 
@@ -29,6 +29,8 @@ NO_LEXER = ("", "csv", "cue")
 """Languages of blocks that a code host colours and Pygments does not know, or none."""
 SLOT = re.compile(r"<!-- site: (?P<name>[\w ]+) -->\n(?P<meanwhile>.*?)<!-- end of site -->\n?", re.DOTALL)
 """What only the site has, made from the program; a code host shows the sentences between the marks instead."""
+HEADINGS = re.compile(r"\A(?:#+ .+\n\n)*")
+"""What stands above the first paragraph of a page, beside which its picture stands."""
 
 NOT_SEARCHED = ("contribute/changelog.md", "reference/errors.md", "reference/refusals.md")
 """Pages with a little of everything: a search would name them before the page on what was asked."""
@@ -95,9 +97,16 @@ class Staging:
             drawn = page_picture(mark, text, self.pictures)
             self.write(f"pictures/{drawn.name}", drawn.read_bytes())
             lines = " && ".join(f"thermicon {line}" for line in command_lines(mark))
-            return f"![{mark['alt']}](/pictures/{drawn.name})\n\n*{mark['alt']}*: `{lines}`\n"
+            beside = "beside" if COLUMN in lines else "across"
+            figure = f"```{{figure}} /pictures/{drawn.name}\n:alt: {mark['alt']}\n:figclass: {beside}\n\n"
+            figure += f"*{mark['alt']}*: `{lines}`\n```\n\n"
+            above.append(figure)
+            return ""
 
-        return MARK.sub(picture, SLOT.sub(content, text))
+        above: list[str] = []
+        text = MARK.sub(picture, SLOT.sub(content, text))
+        start = HEADINGS.search(text)
+        return text[: start.end()] + "".join(above) + text[start.end() :] if start else text
 
     def linked(self, text: str, where: PurePosixPath, here: PurePosixPath) -> str:
         """Return a page of the repository with links as they are on the site, and with blocks in colour."""

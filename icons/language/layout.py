@@ -6,8 +6,9 @@ from thermicon.base.checks.arguments import checked
 
 from ..model.format import header_lines
 from ..model.units import LONGEST_NUMBER
+from .grammar import grammar
 from .parse import parse
-from .source import Source, decode, grammar
+from .source import Source, decode
 
 _UNITS = ("ABSOLUTE", "DIFFERENCE", "RATE", "TIME", "CURRENT", "CURRENT_RATE", "UNIT")
 _NO_BLANK_BEFORE = ("COMMA", "RSQB", "_DOTS", "LPAR", "RPAR")

@@ -12,7 +12,8 @@ from ..model.errors import MOST_ERRORS, MOST_READ
 from ..model.words import VOCABULARY
 from .diagnose import diagnose
 from .failed_statement import FailedStatement
-from .source import Finding, Patch, Piece, Source, grammar
+from .grammar import grammar
+from .source import Finding, Patch, Piece, Source
 
 if TYPE_CHECKING:
     from lark import Token, Tree

@@ -3,14 +3,8 @@
 import re
 from bisect import bisect_right
 from dataclasses import dataclass, field
-from functools import cache
-from importlib import resources
-from typing import TYPE_CHECKING
 
 from ..model.errors import CueError, whole_file
-
-if TYPE_CHECKING:
-    from lark import Lark
 
 # Some three thousand icons; every text of this size is read or refused within a few seconds.
 MOST_BYTES = 250_000
@@ -180,12 +174,3 @@ def decode(data: str | bytes, file: str) -> str:
     if not text.strip():
         raise whole_file("E005", file, "nothing but white space", 'a cue file begins with "cue 1" and holds icons')
     return text
-
-
-@cache
-def grammar() -> "Lark":
-    """The parser made of ``grammar.lark``."""
-    from lark import Lark
-
-    text = resources.files("thermicon.icons").joinpath("grammar.lark").read_text(encoding="utf-8")
-    return Lark(text, parser="lalr", lexer="contextual", propagate_positions=True, maybe_placeholders=False)

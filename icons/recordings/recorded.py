@@ -210,7 +210,7 @@ def _readings(file: str, data: bytes, column: str | None, columns: Mapping[str, 
     found = measured(table, [chosen], _CURE, gaps=False, steps=True)
     times, levels = found.time_s.tolist(), found.columns[chosen].tolist()
     if (length := times[-1] - times[0]) > LONGEST_S:
-        like = like_units_of_time(found.time_s, whole=False)
+        like = None if found.clocked else like_units_of_time(found.time_s, whole=False)
         help = f"if these are {like[0]}, {like[1]}; otherwise cut the file" if like else "cut the file"
         what = f"{TIME} runs over {length:,.6g} s"
         raise whole_file("E221", file, what, f"an icon lasts at most {LONGEST_S:g} s; {help}")
@@ -219,7 +219,7 @@ def _readings(file: str, data: bytes, column: str | None, columns: Mapping[str, 
     for line, level in zip(found.lines, levels, strict=True):
         if not LOWEST_C <= level <= HIGHEST_C:
             what = f"{chosen} is {level:g}; an icon keeps to {LOWEST_C:g} to {HIGHEST_C:g} °C".replace("-", "−")
-            raise fault("unit", line, what, "correct or remove the reading, if it is an error of the sensor")
+            raise fault("unit", line, what, "correct it, or remove the row, if it is an error of the sensor")
     # From 0 s on, without the stray digits that differences of large times have.
     digits = min(9, math.floor(-math.log10(math.ulp(max(abs(times[0]), abs(times[-1]))))))
     rising = tuple(round(time - times[0], digits) for time in times)

@@ -22,6 +22,10 @@ class DesignView {
     this.timeline = new Timeline(root, (message) => flow.post(message), say);
     this.timeline.onHandle = (line, follow) => this.editor.pointAt(line, follow);
     this.badge = new Badge(say);
+    this.player = new Player(this.timeline, (message) => flow.post(message), () => this.editor.text, say);
+    this.sides = new Sides((message) => flow.post(message), (message) => this.ask(message));
+    this.timeline.keys.b = () => this.sides.change();
+    this.palette = new Palette(this.editor, (message) => flow.post(message), say);
     this.strip = new Strip((text) => this.ask({ type: "goal", text }), say);
     this.element = this.build();
   }
@@ -31,14 +35,17 @@ class DesignView {
     const button = (type, sign, name, keys) =>
       make("button", { type: "button", class: "tm-button", title: `${name} (${keys})`, onclick: () => flow.post({ type }) },
         make("span", { "aria-hidden": true, class: "tm-sign" }, sign), name);
-    this.picker = make("select", { class: "tm-picker", onchange: () => this.ask({ type: "icon", name: this.picker.value }) });
+    this.picker = make("select", { class: "tm-picker", title: "icon", onchange: () => this.ask({ type: "icon", name: this.picker.value }) });
     this.undo = button("undo", "\u21b6", "Undo", "Ctrl+Z");
     this.redo = button("redo", "\u21b7", "Redo", "Ctrl+Shift+Z");
     this.noteList = make("ul", { class: "tm-notes", "aria-label": "Notes", hidden: true });
     const picker = make("label", { class: "tm-pick" }, "Icon ", this.picker);
-    const bar = make("div", { class: "tm-bar", role: "toolbar", "aria-label": "Icon and safety" }, picker, this.undo, this.redo, this.strip.element, this.badge.element);
-    const split = make("div", { class: "tm-split" }, this.editor.element, this.timeline.element);
-    return make("div", { class: "tm-design" }, bar, split, this.noteList);
+    const bar = make("div", { class: "tm-bar", role: "toolbar", "aria-label": "Icon and safety" }, picker, this.strip.element, this.badge.element);
+    this.editor.element.prepend(make("div", { class: "tm-editor-bar", role: "toolbar", "aria-label": "Text" }, this.undo, this.redo, this.palette.element));
+    this.player.bar.append(this.sides.pin);
+    const split = make("div", { class: "tm-split" }, make("div", { class: "tm-left" }, this.editor.element, this.player.element), this.timeline.element);
+    const escape = (event) => event.key === "Escape" && this.player.stop() && event.stopPropagation();
+    return make("div", { class: "tm-design", onkeydown: escape }, bar, this.sides.element, split, this.noteList);
   }
 
   edited(text) {
@@ -66,6 +73,7 @@ class DesignView {
     for (const place of [this.root, this.root.closest(".thermicon")]) place?.toggleAttribute("data-older", older);
     this.badge.show(shown, Boolean(why) && !late);
     this.strip.age(older);
+    this.player.reel.age();
     Object.assign(this.root.dataset, { icon: icon ?? "", colour: shown.colour });
   }
 
@@ -94,6 +102,7 @@ class DesignView {
     this.redo.disabled = !frame.can_redo;
     this.showNotes(frame.notes);
     this.timeline.show(frame);
+    this.player.show(frame);
     this.frame = frame;
   }
 
@@ -136,6 +145,8 @@ class DesignView {
 
   stop() {
     clearTimeout(this.later);
+    this.player.stop();
+    this.palette.stop();
     this.editor.stop();
     this.timeline.stop();
     this.badge.stop();
@@ -168,9 +179,10 @@ class Badge {
   show({ colour, text, more }, passing) {
     const { word, sign } = BADGES[colour] ?? BADGES.grey;
     this.element.dataset.colour = colour;
+    if (this.button.title !== text) this.button.title = text;
     setText(this.pill, `${sign} ${word}`);
     setText(this.text, text.slice(text.indexOf(`${word}: `) < 0 ? 0 : text.indexOf(`${word}: `) + word.length + 2)); // the pill says the word
-    this.button.title = text;
+    if (this.button.title !== text) this.button.title = text;
     const lines = (more ?? []).join("\n");
     if (lines !== this.lines) {
       this.lines = lines;

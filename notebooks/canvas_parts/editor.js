@@ -97,10 +97,19 @@ class Editor {
     this.followed = follow ? line : 0;
   }
 
+  /** Scrolls the text alone: CodeMirror's own way would scroll the page around it too. */
   reveal(line, y = "center") {
     const { doc } = this.view.state;
-    const from = doc.line(clamp(line, 1, doc.lines)).from;
-    this.view.dispatch({ effects: CM.EditorView.scrollIntoView(from, { y, yMargin: 20 }) });
+    const { from } = doc.line(clamp(line, 1, doc.lines));
+    const scroller = this.view.scrollDOM;
+    const scroll = () => {
+      const { top, bottom } = this.view.lineBlockAt(from);
+      const [above, high] = [scroller.scrollTop, scroller.clientHeight];
+      if (y === "nearest" && top >= above && bottom <= above + high) return;
+      scroller.scrollTop = y === "center" || (y === "nearest" && bottom > above + high) ? (top + bottom - high) / 2 : top - 20;
+    };
+    scroll();
+    requestAnimationFrame(scroll); // lines that were out of sight have their true heights now
   }
 
   /** Scrolls to where an icon, or the family that it belongs to, begins. */
@@ -120,7 +129,8 @@ class Editor {
 
   goTo(line, column) {
     const anchor = this.placeOf(line, column);
-    this.view.dispatch({ selection: { anchor }, effects: CM.EditorView.scrollIntoView(anchor, { y: "center" }) });
+    this.view.dispatch({ selection: { anchor } });
+    this.reveal(line);
     this.focus();
   }
 

@@ -14,19 +14,22 @@ function seriesOf(given) {
 
 function panelOf(given) {
   const panel = { height: 1, digits: 4, terms: [], levels: [], spans: [], marks: [], ...given };
-  return { ...panel, series: (given.series ?? []).map(seriesOf), unit: unitOf(given.label ?? "") };
+  const [series, pinned] = [given.series ?? [], given.pinned ?? []].map((all) => all.map(seriesOf));
+  return { ...panel, series, pinned, unit: unitOf(given.label ?? "") };
 }
 
 /** The frame of a "design" or "traces" view. */
 function tracesFrame(meta, buffers) {
   const defaults = {
     seq: 0, text: null, of: "", icons: [], icon: null, troubles: [], stale: false, can_undo: false, can_redo: false,
-    badge: { colour: "grey", text: "", more: [] }, notes: [], time: { t0: 0, dt: 1, n: 0 }, handles: [], ms: null,
+    badge: { colour: "grey", text: "", more: [] }, notes: [], time: { t0: 0, dt: 1, n: 0 }, handles: [], pinned: null, ms: null,
   };
   const frame = { ...defaults, ...meta, arrays: (buffers ?? []).map(floatsOf) };
   frame.panels = (meta.panels ?? []).map(panelOf);
-  const { t0, dt, n } = frame.time;
-  frame.end = n > 1 && dt > 0 ? t0 + dt * (n - 1) : t0 + 1;
+  const endOf = ({ t0, dt, n }) => (n > 1 && dt > 0 ? t0 + dt * (n - 1) : t0 + 1);
+  frame.end = endOf(frame.time);
+  if (frame.pinned) frame.pinned = { ...frame.pinned, end: endOf(frame.pinned) };
+  frame.play = { until: frame.end, felt: false, onset: Infinity, quality: "", share: null, ...meta.play };
   return frame;
 }
 

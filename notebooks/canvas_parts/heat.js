@@ -35,12 +35,15 @@ class HeatView {
 
   makeMap(matrix, k) {
     const { labels } = this.frame;
-    const corner = make("span", { role: "columnheader", class: "tm-corner" });
-    const heads = labels.map((name, j) => make("span", { role: "columnheader", class: "tm-column", "data-column": j, title: name }, make("span", {}, name)));
+    const common = commonStart(labels);
+    const corner = make("span", { role: "columnheader", class: "tm-corner", title: common && `every name begins with ${common}` }, common && `${common}…`);
+    const own = (name) => name.slice(common.length);
+    const heads = labels.map((name, j) =>
+      make("span", { role: "columnheader", class: "tm-column", "data-column": j, title: name, "aria-label": name }, make("span", {}, own(name))));
     const rows = labels.map((name, i) => {
       const cells = labels.map((_, j) => this.makeCell(k, i, j));
       this.cells[k].push(cells);
-      const head = make("span", { role: "rowheader", class: "tm-row", "data-row": i, title: name }, name);
+      const head = make("span", { role: "rowheader", class: "tm-row", "data-row": i, title: name, "aria-label": name }, own(name));
       return make("div", { role: "row", class: "tm-grid-row" }, head, ...cells);
     });
     const grid = make(
@@ -50,7 +53,7 @@ class HeatView {
       ...rows,
     );
     grid.style.setProperty("--tm-count", labels.length);
-    grid.style.setProperty("--tm-label", `${clamp(7 * Math.max(...labels.map((name) => name.length)) + 8, 40, 150)}px`);
+    grid.style.setProperty("--tm-label", `${clamp(7 * Math.max(common.length + 1, ...labels.map((name) => own(name).length)) + 8, 40, 150)}px`);
     return make("figure", { class: "tm-map", "data-matrix": matrix.key }, make("figcaption", {}, matrix.label, " ", wordsOf(matrix.terms), " ", make("span", { class: "tm-rough" })), grid, this.scaleOf(matrix));
   }
 
@@ -166,6 +169,13 @@ class HeatView {
     this.observer.disconnect();
     this.unwatch();
   }
+}
+
+/** What all names of a set begin with, up to a sign between words; it is said once. Nothing where it is short. */
+function commonStart(names) {
+  const least = names.reduce((common, name) => common.slice(0, commonHead(common, name)), names[0] ?? "");
+  const start = /^.*[-_=.]/.exec(least)?.[0] ?? "";
+  return names.length > 1 && start.length > 3 ? start : "";
 }
 
 /** A value as its matrix writes it: "0.0" or "0%". */

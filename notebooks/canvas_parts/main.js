@@ -79,7 +79,12 @@ class Workbench {
 
   receive(meta, buffers) {
     if (meta?.type === "alive") this.flow.arrived(0); // nothing is drawn yet
-    if (meta?.type === "strip") this.view?.strip?.show(meta);
+    if (meta?.type === "strip") {
+      this.view?.strip?.show(meta);
+      this.view?.sides?.show(meta.sides ?? []);
+    }
+    if (meta?.type === "reel") this.view?.player?.take(meta, buffers);
+    if (meta?.type === "palette") this.view?.palette?.show(meta.sets);
     if (meta?.type !== "frame") return;
     const sent = this.flow.arrived(meta.seq ?? 0);
     const older = this.newest; // a frame that is never drawn may still be the one that brings a text
@@ -103,7 +108,7 @@ class Workbench {
     this.age();
     if (frame.troubles && !this.view.textPending) this.sayTroubles(frame.troubles);
     this.root.dataset.seq = frame.seq;
-    if (kind === "design") nameControls(this.root);
+    if (kind === "design") tendControls(this.root);
     const drawn = performance.now();
     measure(kind, { seq: frame.seq, sent_ms: sent, arrived_ms: arrived, drawn_ms: drawn, kernel_ms: frame.ms, draw_ms: drawn - began });
   }

@@ -93,6 +93,7 @@ function drawPanel(surface, frame, panel, view, range, palette) {
   drawGrid(context, lay, view, palette);
   inPlot(context, lay, () => {
     for (const level of panel.levels) drawLevel(context, level, lay, palette);
+    for (const series of panel.pinned) drawPinned(context, series, frame, lay, palette);
     for (const series of panel.series) drawSeries(context, series, frame, lay, palette);
   });
   drawMarks(context, lay, palette);
@@ -169,6 +170,16 @@ function drawSeries(context, series, frame, lay, palette) {
   context.lineJoin = "round";
   context.setLineDash(series.dash ?? []);
   strokeSeries(context, values, frame.time, lay.x, lay.y, series.step);
+}
+
+/** A curve of what is pinned, pale and broad behind the present ones. */
+function drawPinned(context, series, frame, lay, palette) {
+  context.globalAlpha = 0.3;
+  context.strokeStyle = palette[series.role] ?? palette.ink;
+  context.lineWidth = 4;
+  context.setLineDash([]);
+  strokeSeries(context, frame.arrays[series.buffer], frame.pinned, lay.x, lay.y, series.step);
+  context.globalAlpha = 1;
 }
 
 function drawMarks(context, lay, palette) {

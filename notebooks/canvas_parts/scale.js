@@ -34,7 +34,7 @@ function rangeOf(panel, arrays, handles) {
     if (value < low) low = value;
     if (value > high) high = value;
   };
-  for (const series of panel.series) for (const value of arrays[series.buffer]) take(value);
+  for (const series of [...panel.series, ...panel.pinned]) for (const value of arrays[series.buffer]) take(value);
   for (const level of panel.levels) take(level.at);
   for (const mark of panel.marks) take(mark.y);
   for (const handle of handles) if (handle.panel === panel.key) take(handle.y);

@@ -15,8 +15,8 @@ class Strip {
     const number = () => make("b", {}, "–");
     Object.assign(this, { whole: number(), icon: number(), felt: number(), met: make("b", { class: "tm-met" }) });
     this.element = make("div", { class: "tm-strip", role: "group", "aria-label": "Predictions", "data-lm-suppress-shortcuts": "true" },
-      make("span", {}, "felt and named: set ", this.whole), make("label", {}, "goal ", this.goal, this.met),
-      make("span", {}, "icon ", this.icon, ", felt by ", this.felt));
+      make("span", {}, "felt and named: set ", this.whole, "icon ", this.icon), make("span", {}, "felt by ", this.felt),
+      make("label", {}, "goal ", this.goal, this.met));
   }
 
   /** The numbers stay, pale; whether a goal is met is not known of another text. */

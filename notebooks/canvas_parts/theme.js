@@ -36,14 +36,37 @@ function followSystem() {
   follow();
 }
 
-/** Names for screen readers, where ipywidgets gives none: a knob's label stands beside its control. */
-function nameControls(root) {
-  for (const knob of root.closest(".thermicon")?.querySelectorAll(".thermicon-knob") ?? []) {
+/** Knobs as ipywidgets makes them, with names for screen readers, and with one tab stop: brackets go to another knob. */
+function tendControls(root) {
+  const knobs = root.closest(".thermicon")?.querySelector(".thermicon-knobs");
+  const handles = [...(knobs?.querySelectorAll(".noUi-handle") ?? [])];
+  const now = handles.find((handle) => handle.tabIndex === 0 && handle.dataset.tended) ?? handles[0];
+  for (const knob of knobs?.querySelectorAll(".thermicon-knob") ?? []) {
     const name = knob.querySelector(".widget-html-content")?.textContent.trim();
     for (const control of knob.querySelectorAll(".noUi-handle, select, .widget-readout")) {
       if (name && control.getAttribute("aria-label") !== name) control.setAttribute("aria-label", name);
+      const handle = control.classList.contains("noUi-handle");
+      const stop = control === now ? 0 : -1;
+      if (control.tabIndex !== stop || !control.hasAttribute("tabindex")) control.tabIndex = stop;
+      if (!handle || control.dataset.tended) continue;
+      Object.assign(control.dataset, { tended: true, lmSuppressShortcuts: true });
+      control.title = "[ and ] go to another slider, Enter to its number";
+      control.addEventListener("keydown", (event) => onKnobKey(event, control));
     }
   }
+}
+
+function onKnobKey(event, handle) {
+  const way = { "[": -1, "]": 1 }[event.key];
+  if (event.key === "Enter") handle.closest(".thermicon-knob").querySelector(".widget-readout")?.focus();
+  else if (!way) return;
+  event.preventDefault();
+  event.stopPropagation();
+  if (!way) return;
+  const all = [...handle.closest(".thermicon-knobs").querySelectorAll(".noUi-handle")];
+  const next = all[(all.indexOf(handle) + way + all.length) % all.length];
+  for (const each of all) each.tabIndex = each === next ? 0 : -1;
+  next.focus();
 }
 
 /** Calls `act` when the theme of the page changes; returns how to stop. */

@@ -2,6 +2,7 @@
 // second one above it, so that moving the pointer never draws the curves again.
 
 const CURSOR_HELP = "Left and right arrows move the time cursor, with Shift ten times as far, Home and End to its ends.";
+const PLAY_HELP = "Space plays and Escape stops; B changes sides with what is pinned.";
 const CORNER_HELP = "Square brackets choose a corner; arrows then move it, and Escape goes back to the cursor.";
 
 const CURSOR_KEYS = { ArrowLeft: -1, ArrowRight: 1, Home: -1, End: 1 };
@@ -10,7 +11,7 @@ const TIP_ROOM = 70; // pixels that the tallest tip needs above its corner
 class Timeline {
   /** `post` sends a message and returns its seq, `say` tells screen readers; without `post` nothing can be dragged. */
   constructor(root, post, say) {
-    Object.assign(this, { root, post, say, panels: [], shape: "", frame: null, cursor: null, view: null, onHandle: () => {} });
+    Object.assign(this, { root, post, say, panels: [], shape: "", frame: null, cursor: null, view: null, playing: false, keys: {}, onHandle: () => {}, onCursor: () => {} });
     this.handles = new Handles(post, () => this.refresh(), say);
     this.sayReading = whenQuiet(() => say(this.reading()), 500);
     this.build();
@@ -28,7 +29,7 @@ class Timeline {
   }
 
   build() {
-    const help = make("span", { id: uniqueId("help"), class: "tm-unseen" }, this.post ? `${CURSOR_HELP} ${CORNER_HELP}` : CURSOR_HELP);
+    const help = make("span", { id: uniqueId("help"), class: "tm-unseen" }, this.post ? `${CURSOR_HELP} ${PLAY_HELP} ${CORNER_HELP}` : CURSOR_HELP);
     this.axis = make("canvas", { class: "tm-axis", "aria-hidden": true });
     this.stack = make("div", { class: "tm-stack" });
     this.stage = make(
@@ -119,7 +120,7 @@ class Timeline {
   /** Ranges of the axes. While a corner is pulled its own axes stand still, and the others only grow. */
   fitRanges(frame) {
     const still = this.handles.pulling && this.view;
-    if (!still) this.view = { from: frame.time.t0, to: frame.end };
+    if (!still) this.view = { from: frame.time.t0, to: Math.max(frame.end, frame.pinned?.end ?? 0) };
     const held = still ? frame.handles[this.handles.pulled.index]?.panel : null;
     const before = this.ranges ?? new Map();
     this.ranges = new Map();
@@ -169,6 +170,7 @@ class Timeline {
     const axis = fitted(this.axis, this.boxes.axis);
     if (axis) drawTimeAxis(axis, this.view, this.cursor, this.palette);
     this.panels.forEach((parts, k) => this.readOut(this.frame.panels[k], parts)); // texts last: they undo the layout
+    this.onCursor();
     this.showTip();
   }
 
@@ -257,7 +259,7 @@ class Timeline {
       this.handles.hover(index);
       over.style.cursor = pointerOver(this.handles.list[index]);
     }
-    this.moveCursor(t);
+    if (!this.playing) this.moveCursor(t);
   }
 
   onDown(event, { lay, key, over }) {
@@ -292,6 +294,8 @@ class Timeline {
   /** Does what a key asks for; false if it asks for nothing here. */
   byKey(key, tenfold) {
     this.sayReading.cancel();
+    if (this.keys[key.length > 1 ? key : key.toLowerCase()]?.()) return true;
+    if (CURSOR_KEYS[key] && this.playing) this.keys.Escape?.();
     if (key === "[" || key === "]") this.handles.choose(key === "]" ? 1 : -1);
     else if (key === "Escape" && this.handles.chosen >= 0) {
       this.handles.chosen = -1;

@@ -61,14 +61,15 @@ def check_packages() -> Found:
 
 
 def check_cache() -> Found:
-    """Look whether compiled code can be kept, and how much is kept."""
+    """Look whether compiled code and verdicts can be kept, and how much is kept."""
     from thermicon.base.files.cache_folder import NotPrivate, cache_folder, compiled_folder, private_folder
 
     cache = cache_folder()
     try:
         private_folder(compiled_folder(version("numba"), version("llvmlite")))
     except NotPrivate as problem:
-        text = f"nothing can be kept, so that every run compiles its code again, about half a minute ({problem})"
+        again = "every run compiles its code again, about half a minute, and judges its drives again"
+        text = f"nothing can be kept, so that {again} ({problem})"
         return "note", text, "set THERMICON_CACHE to a folder that only you can write to"
     total = sum(path.lstat().st_size for path in cache.rglob("*") if path.is_file()) / 1e6
     return "ok", f"{cache}, writable, {total:.0f} MB; nothing but time is lost where it is deleted", None

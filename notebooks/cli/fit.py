@@ -82,13 +82,13 @@ def fit_command(
         raise usage("give a LOG, or --plan to see what a log would identify", "LOG")
     from thermicon.circuit import fit
     from thermicon.circuit.fitting.fit_figure import fit_figure
-    from thermicon.circuit.fitting.log import read_log
+    from thermicon.circuit.fitting.log import read_logs
 
     where = rig.load()
     if output is not None:
         check_output(output, RIG_SUFFIXES, "a rig")
     check_separate(logs, [output, figure.figure])
-    read = [read_log(log, theirs_of(column)) for log in logs]
+    read = [each for log in logs for each in read_logs(log, theirs_of(column))]
     for name in theirs_of(column):
         if all(name in log.lost for log in read):
             raise usage("; ".join(log.lost[name] for log in read), "--column")

@@ -1,5 +1,6 @@
 """``thermicon lab``: the notebooks copied to a folder and opened in JupyterLab."""
 
+import json
 import os
 import subprocess
 import sys
@@ -24,6 +25,8 @@ FILES = (".cue", ".csv", ".ipynb", ".json", ".py", ".toml", ".txt")
 FIRST = "01_first_icon.ipynb"
 PROMPT = "--ServerApp.kernel_websocket_connection_class=thermicon.notebooks.cli.prompt_socket.PromptSocket"
 """Option of JupyterLab by which answers of a kernel on this machine do not wait; a gateway has a socket of its own."""
+NO_NEWS = {"@jupyterlab/apputils-extension:notification": {"fetchNews": "false"}}
+"""Default of JupyterLab by which it does not ask whether to show its news; what a person chose there stays."""
 ENDS_ITSELF_S, TIDIES_UP_S = 3.0, 10.0
 
 
@@ -96,6 +99,14 @@ def command_of(folder: Path, no_browser: bool, port: int | None) -> list[str]:
     return words + ([f"--port={port}"] if port is not None else [])
 
 
+def environment(folder: Path) -> dict[str, str]:
+    """What JupyterLab runs in, with defaults of ours in a folder."""
+    (folder / "labconfig").mkdir()
+    (folder / "labconfig" / "default_setting_overrides.json").write_text(json.dumps(NO_NEWS), encoding="utf-8")
+    paths = [str(folder), *filter(None, [os.environ.get("JUPYTER_CONFIG_PATH")])]
+    return {**os.environ, "PYTHONSAFEPATH": "1", "JUPYTER_CONFIG_PATH": os.pathsep.join(paths)}
+
+
 def serve(command: list[str]) -> None:
     """Run JupyterLab until it ends or Ctrl-C ends it; it is given the time to stop its kernels.
 
@@ -103,12 +114,11 @@ def serve(command: list[str]) -> None:
     kernels run in the folder of their notebooks, and import nothing from there (PYTHONSAFEPATH).
     """
     note("press Ctrl-C to stop")
-    own = {**os.environ, "PYTHONSAFEPATH": "1"}
     # Without a terminal to ask at, a server ends at once on Ctrl-C, which reaches it as well as this process.
     with (
         stopped_cleanly(),
         tempfile.TemporaryDirectory(prefix="thermicon-", ignore_cleanup_errors=True) as empty,
-        subprocess.Popen(command, cwd=empty, env=own, stdin=subprocess.DEVNULL) as server,
+        subprocess.Popen(command, cwd=empty, env=environment(Path(empty)), stdin=subprocess.DEVNULL) as server,
     ):
         try:
             code = server.wait()

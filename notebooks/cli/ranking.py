@@ -15,9 +15,9 @@ from thermicon.perception.criteria import MOST_ICONS
 
 from ..files.outputs import STDOUT, check_output, check_separate
 from ..loading import check_draws, site_warnings
-from ..messages import fail, note, progress_bar, usage
+from ..messages import fail, note, progress_bar, shown_at_once, usage
 from ..report.following import after_ranking
-from ..report.rank_report import doubt_report, rank_report, rules_report
+from ..report.rank_report import doubt_report, rank_report, rules_report, table_report
 from ..report.terminal import show
 from .options import (
     CrowdOptions,
@@ -41,7 +41,11 @@ if TYPE_CHECKING:
     from thermicon.perception import Task
     from thermicon.perception.observer.observer_model import ObserverModel
 
+    from ..report.set_report import SetReport
+
 TRIALS, MOST_WORKERS = 48, 1024
+MANY = 33
+"""Of so many icons, who watches sees the table before edits and intervals, which take as long again."""
 TASK = {"trials": (1.0, 1e6, ""), "gap": (0.0, 600.0, " s")}
 """Keys of --task with their limits, those of `thermicon.perception.Task`, repeated here to avoid its imports."""
 
@@ -167,6 +171,13 @@ def rank_command(
     _say_if_first()
     trials, named = task.load()
     asked = {**crowd.asked, "goal": wanted, "trials": trials, "task": named, "observer": model}
+    watched = len(icons) >= MANY and shown_at_once() and json != STDOUT and crowd.memory != "rules"
+
+    def show_table(ranked: SetReport) -> None:
+        show(table_report(ranked, icons.title, cures(ranked.ranking, icons, where), details))
+        typer.echo()
+
+    asked["first"] = show_table if watched else None
     found = report_of(icons, where, draws, warnings=warnings, workers=here, **asked)
     if json is not None and json != STDOUT:
         write_text(found.to_json() + "\n", json)
@@ -183,7 +194,7 @@ def rank_command(
         show(rules_report(found.ranking, icons.title))
     else:
         following = after_ranking(found, commands(files, rig, crowd), near)
-        show(rank_report(found, icons.title, near, following, details))
+        show(rank_report(found, icons.title, near, following, details, watched))
 
 
 def doubt_about(

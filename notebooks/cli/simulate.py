@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from functools import partial
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -15,7 +14,7 @@ import typer
 
 from thermicon.base.files.atomic import complete_or_absent
 
-from ..figures.overview import FELT_TAIL_S, felt_overview
+from ..figures.overview import FELT_TAIL_S, felt, overview
 from ..figures.session_figure import session_figure
 from ..files.outputs import NETLIST_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import note, noted, progress_bar, usage
@@ -53,9 +52,37 @@ NGSPICE = ".sp"
 """The ending of a netlist that makes ngspice write all probes; LTspice does not read that."""
 
 
+@dataclass(frozen=True)
+class FilmOptions(FigureOptions):
+    """The figure and the film of a run."""
+
+    film: Annotated[Path | None, out("OUT", "Film what is felt: .svg (it moves), .gif or, with ffmpeg, .mp4.")] = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.film is not None:
+            from thermicon.perception.plots.film import SUFFIXES, movie_writer
+
+            check_output(self.film, SUFFIXES, "a film")
+            movie_writer(self.film)
+
+    def named(self, icon: str) -> FilmOptions:
+        """The same for one icon of several, whose name its files have at their ends."""
+        figure, film = (path and path.with_stem(f"{path.stem}-{icon}") for path in (self.figure, self.film))
+        return replace(self, figure=figure, film=film)
+
+    def write_felt(self, trace: Trace, rig: Rig) -> None:
+        """Write the figure and the film of a run with what is felt of it, and say so."""
+        played, percept = felt(trace)
+        self.write(lambda: overview(played, percept, rig.changes))
+        if self.film is not None:
+            percept.film(played).save(self.film)
+            note(f"wrote {self.film}: {percept.summary}")
+
+
 def simulate_command(
     rig: RigOptions,
-    figure: FigureOptions,
+    figure: FilmOptions,
     file: NoFile = None,
     icon: IconName = None,
     current: Annotated[
@@ -102,7 +129,7 @@ def simulate_command(
     rate: Annotated[float, opt("HZ", "Samples per second.", 1e-3, 1e6)] = 100.0,
     tail: Annotated[
         float | None,
-        opt("S", "Seconds simulated after the last corner.  [default: 0; 5 in figures]", 0.0, LONGEST_TAIL_S),
+        opt("S", "Seconds simulated after the last corner.  [default: 0; 5 in figures and films]", 0.0, LONGEST_TAIL_S),
     ] = None,
 ) -> None:
     """Simulate icons: the current that plays them, and temperatures and heat flow down to the receptors.
@@ -119,8 +146,12 @@ def simulate_command(
     _refuse({"--hold": hold, "--column": column}, current is None, "belongs to --current, which plays a drive")
     _refuse(in_session, not session, "belongs to a session; give --order FILE or --random N")
     _refuse({"--seed": seed is not None}, random is None, "belongs to --random")
-    _refuse({"--figure": figure.figure}, circuit, "belongs to a trace, not to a circuit")
-    _refuse({"--current": current, "--random": random and order, **alone}, session, "does not go with a session")
+    _refuse({"--figure": figure.figure, "--film": figure.film}, circuit, "belongs to a trace, not to a circuit")
+    _refuse(
+        {"--current": current, "--random": random and order, "--film": figure.film, **alone},
+        session,
+        "does not go with a session",
+    )
     _refuse(needs_file, current is not None, "belongs to a cue FILE; a drive has no icons and ends at its last row")
     if (file is None) == (current is None):
         raise usage("give either a cue FILE or --current DRIVE.csv", "FILE")
@@ -148,16 +179,14 @@ def simulate_file(
     rate_Hz: float,
     tail_s: float | None,
     output: Path | None,
-    figure: FigureOptions,
+    figure: FilmOptions,
 ) -> None:
     """Play the icons of a file (or the one named) on the rig; write the traces, or print a summary of each."""
     from thermicon.circuit import nearest_reachable, simulate
 
     whole = read_set([file])
     icons, rig = pick(whole, icon), asked.load(whole, file)
-    pictures = [] if figure.figure is None else [figure.figure]
-    if figure.figure is not None and len(icons) > 1:
-        pictures = [figure.figure.with_stem(f"{figure.figure.stem}-{each.name}") for each in icons]
+    pictures = [figure.named(each.name) if len(icons) > 1 else figure for each in icons]
     _check_outputs(file, output, pictures)
     traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
     near = [None if one.reachable else nearest_reachable(each, rig) for each, one in zip(icons, traces, strict=True)]
@@ -166,28 +195,29 @@ def simulate_file(
         lost = [str(one.icon) for one, kept in zip(traces, safe, strict=True) if not (one.reachable and kept)]
         cured = [str(one.icon) for one, found in zip(traces, near, strict=True) if found is not None]
         typer.echo(f"Next: {after_simulating(cured, lost, commands([file], asked, CrowdOptions()))}")
-    for each, picture in zip(icons, pictures, strict=False):
-        played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
-        replace(figure, figure=picture).write(partial(felt_overview, played, rig.changes))
+    for each, picture in zip(icons, pictures, strict=True):
+        if picture.figure or picture.film:
+            picture.write_felt(simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s), rig)
 
 
 def simulate_drive(
-    file: Path, hold: bool, theirs: dict[str, str], rig: Rig, rate_Hz: float, output: Path | None, figure: FigureOptions
+    file: Path, hold: bool, theirs: dict[str, str], rig: Rig, rate_Hz: float, output: Path | None, figure: FilmOptions
 ) -> None:
     """Play a drive current from a CSV file on the rig; write the trace, or print a summary."""
     from thermicon.circuit.solver.drive import read_drive
     from thermicon.circuit.solver.simulate import simulate_current
 
-    _check_outputs(file, output, [] if figure.figure is None else [figure.figure])
+    _check_outputs(file, output, [figure])
     with noted():
         played = read_drive(file, hold=hold, columns=theirs)
     tell([simulate_current(played, rig, rate_Hz=rate_Hz)], rig, output, [None])
-    figure.write(lambda: felt_overview(simulate_current(played, rig), rig.changes))
+    if figure.figure or figure.film:
+        figure.write_felt(simulate_current(played, rig), rig)
 
 
-def _check_outputs(read: str | Path, output: Path | None, pictures: Sequence[Path]) -> None:
+def _check_outputs(read: str | Path, output: Path | None, pictures: Sequence[FilmOptions]) -> None:
     """Fail where a file cannot be written or would replace what is read."""
-    check_separate([read], [output, *pictures])
+    check_separate([read], [output, *(path for each in pictures for path in (each.figure, each.film))])
     if output is not None:
         check_output(output, TRACE_SUFFIXES, "a trace")
 

@@ -42,7 +42,8 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
     from thermicon.icons import Icon, IconSet
 
-MOST_VALUES = 10_000
+MOST_VALUES, MOST_CURVED, MOST_NARROW = 10_000, 6, 2
+"""Values of a sweep, icons whose curves its figure draws, and icons up to which one for a column has curves."""
 FORM = (
     "give KEY=LOW:HIGH:N, for example contact.area_cm2=4:16:7, LOW:HIGH:Nlog for equal ratios, or values such as "
     "site=thenar,fingertip"
@@ -149,18 +150,39 @@ def sweep(
 
 
 def _run(icon: Icon, rig: Rig, change: Mapping[str, float | str], tail_s: float) -> dict[str, Any]:
+    from thermicon.circuit.safety.verdict import summarise
+
+    trace = _trace(icon, rig, change, tail_s)
+    return {"reason": trace} if isinstance(trace, str) else {**summarise(trace).to_dict(), **_receptors(trace)}
+
+
+def _trace(icon: Icon, rig: Rig, change: Mapping[str, float | str], tail_s: float) -> Trace | str:
+    """The run under a change, or the reason for none."""
     import numpy
 
     from thermicon.circuit import InputError, simulate
-    from thermicon.circuit.safety.verdict import summarise
     from thermicon.perception.ranking.swept import rig_under
 
     try:
         with numpy.errstate(all="ignore"):  # what overflows ends as a reason
-            trace = simulate(icon, rig_under(rig, change), tail_s=tail_s)
+            return simulate(icon, rig_under(rig, change), tail_s=tail_s)
     except (InputError, ValueError, ArithmeticError) as problem:
-        return {"reason": "; ".join(str(problem).splitlines())}
-    return {**summarise(trace).to_dict(), **_receptors(trace)}
+        return "; ".join(str(problem).splitlines())
+
+
+def swept_curves(
+    icons: Sequence[Icon], rig: Rig, key: str, values: Sequence[float | str], tail_s: float
+) -> dict[str, dict[float | str, Trace]]:
+    """The traces of icons at values evenly apart, by icon and value; what cannot be played is left out."""
+    from thermicon.icons.pictures.draw import MOST_DRAWN, evenly
+
+    drawn = [values[place] for place in evenly(len(values), MOST_DRAWN)] if key != AGE else []
+    curves = {}
+    for icon in icons:
+        runs = {value: _trace(icon, rig, {key: value}, tail_s) for value in drawn}
+        if traces := {value: run for value, run in runs.items() if not isinstance(run, str)}:
+            curves[icon.name] = traces
+    return curves
 
 
 def _with_people(
@@ -217,9 +239,10 @@ def sweep_command(
 ) -> None:
     """Vary a key of the rig and write, for every icon, misses, extremes, receptor changes and safety.
 
-    Values are in the unit that the key ends with. With --measure every value is ranked as by rank, for
-    --people and with --intervals, and a last row of each is that of the whole set; intervals are those of a new
-    laboratory, 95 %.
+    Without -o a short table is printed. Values are in the unit that the key ends with.
+
+    With --measure every value is ranked as by rank, for --people and with --intervals, and a last row of each is that
+    of the whole set; intervals are those of a new laboratory, 95 %.
     """
     if len(vary) > 1:
         raise usage("one key is varied at a time; for another one, give a second sweep, with --set", "--vary")
@@ -227,8 +250,6 @@ def sweep_command(
     what = () if measure is None else read_measures(measure, intervals or 0)
     if not what and key == AGE:
         raise usage(f"{AGE} changes what people perceive only; add --measure felt-and-named", "--vary")
-    if output is None and figure.figure is None and not what:
-        raise usage("give -o OUT for the table, --figure, or --measure to print what people perceive", "-o")
     if output is not None:
         check_output(output, TRACE_SUFFIXES, "a sweep")
     check_separate([file], [output, figure.figure])
@@ -244,11 +265,15 @@ def sweep_command(
         fail(f"--vary {key}: none of the {len(values)} values can be played; the first: {reason}")
     for line in (*outside_lines(key, values, whole, where), *sweep_lines(frame, [each.name for each in icons], key)):
         note(line)
-    figure.write(lambda: sweep_figure(frame, figure.look))
+    drawn = [] if figure.look.narrow and len(icons) > MOST_NARROW else icons[:MOST_CURVED]
+    if len(drawn) < len(icons) and figure.figure is not None:
+        note(f"note: the figure has the curves of {len(drawn)} of {len(icons)} icons; --icon chooses one")
+    figure.write(lambda: sweep_figure(frame, figure.look, swept_curves(drawn, where, key, values, tail)))
     if output is not None:
         write_frame(frame, output)
-    elif what:
-        following = after_sweep(frame, key, what[0], command_text([file], rig, paths=True))
+    else:
+        rank = command_text([file], rig, paths=True)
+        following = after_sweep(frame, key, what[0], rank) if what else rank
         show([*sweep_report(frame, key, what), f"Next: {following}"])
 
 

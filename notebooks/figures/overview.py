@@ -119,8 +119,8 @@ def _sensation(percept: Percept, ax: Axes) -> None:
     ax.set_ylabel("sensation (d′)\nreceptor clock")
 
 
-def felt_overview(trace: Trace, rig_changes: Sequence[str] = ()) -> Figure:
-    """Draw the overview of one trace, what is felt included."""
+def felt(trace: Trace) -> tuple[Trace, Percept]:
+    """A trace on an even clock, and what is felt of it."""
     from thermicon.perception import perceive
 
     steps = numpy.diff(trace.time_s)
@@ -129,7 +129,7 @@ def felt_overview(trace: Trace, rig_changes: Sequence[str] = ()) -> Figure:
         columns = ((field.name, getattr(trace, field.name)) for field in dataclasses.fields(trace))
         cut: dict[str, Any] = {name: each[:-1] for name, each in columns if isinstance(each, numpy.ndarray)}
         trace = dataclasses.replace(trace, **cut)
-    return overview(trace, perceive(trace), rig_changes)
+    return trace, perceive(trace)
 
 
 def scene_figure(scene: Scene) -> Figure:

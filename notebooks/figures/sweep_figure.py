@@ -12,6 +12,7 @@ from thermicon.circuit.rig.faults import name_of, unit_of
 from thermicon.perception.ranking.swept import ALL, MEASURES
 
 from .style import INK, SCREEN, Look, new_figure, plain
+from .sweep_traces import Curves, draw_curves
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,7 +27,7 @@ MOST_TICKS, LETTER_INCHES, TURNED_INCHES = 6, 0.08, 1.0
 WIDE = 3
 """Panels beside one another, fewer in a column."""
 COLUMN_INCHES, HIGHEST = 6.8, 2.6
-"""Height of all panels of a figure for a column (in print at most 1.5 widths tall), and of one panel."""
+"""Height of the panels over the key in a figure for a column (in print at most 1.5 widths tall), and of one panel."""
 PANELS = (
     (("largest_miss_K",), "largest miss (K)"),
     (("current_min_A", "current_max_A"), "current (A), least dashed"),
@@ -57,8 +58,10 @@ BAND = 0.065
 """How dark the band of an icon is; that of the set is twice as dark."""
 
 
-def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
+def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN, curves: Curves | None = None) -> Figure:
     """Draw the table that `sweep` returns over its key: what the rig does, or what was measured of people.
+
+    Above it stand the traces, if any, over one another.
 
     Icons that mainly cool are blue, others orange, and each has its own mark; a cross stands for an icon that was not
     reached. What the rig does alike at all values is left out and named below. Of people, bands are the 95 % of a new
@@ -73,7 +76,8 @@ def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
     same = [] if what else [label for columns, label in PANELS if _same(frame, columns)]
     if not what:
         panels = [panel for panel in PANELS if panel[1] not in same] or list(PANELS)
-    figure, axes = _small_multiples(len(panels), look.across(2 if what else WIDE))
+    across = look.across(2 if what else WIDE)
+    figure, axes, above = _small_multiples(len(panels), across, len(curves or ()))
     handles: dict[str, Any] = {}
     values: list[Any] = sorted(frame[key].unique())
     if turned := isinstance(values[0], str) and look.narrow:
@@ -107,8 +111,10 @@ def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
     below = textwrap.wrap(alike, int(11 * figure.get_figwidth()) if look is SCREEN else len(alike) + 1)
     unit = "years" if key.endswith("_years") else unit_of(key)
     words = name_of(key).removesuffix("_years").replace(".", " ").replace("_", " ")
-    words = words.replace("seebeck", "Seebeck coefficient")
-    figure.supxlabel("\n".join([f"{words} ({unit})" if unit else words, *below]), fontsize=10)
+    words = words.replace("seebeck", "Seebeck coefficient") + f" ({unit})" * bool(unit)
+    figure.supxlabel("\n".join([words, *below]), fontsize=10)
+    if curves:
+        draw_curves(above, curves, words, log=log)
     return figure
 
 
@@ -121,19 +127,29 @@ def _same(frame: pd.DataFrame, columns: tuple[str, ...]) -> bool:
     return bool((spread <= ALIKE * largest).to_numpy().all())
 
 
-def _small_multiples(count: int, across: int) -> tuple[Figure, list[Axes]]:
-    """A figure with so many panels on one abscissa; those with none below them have its numbers."""
+def _small_multiples(count: int, across: int, curves: int) -> tuple[Figure, list[Axes], list[Axes]]:
+    """A figure with so many panels on one abscissa, and those of curves above; the others return first.
+
+    Those with none below them have the numbers of the abscissa.
+    """
+    rows = -(-curves // across)
     across = min(across, count)
     down = -(-count // across)
     height = HIGHEST if across == WIDE else min(HIGHEST, COLUMN_INCHES / down)
-    figure = new_figure(max(7.2, 3.2 * across), 0.4 + height * down)
-    axes = list(figure.subplots(down, across, sharex=True, squeeze=False).flat)
-    for ax in axes[count:]:
+    figure = new_figure(max(7.2, 3.2 * across), 0.4 + height * (down + rows))
+    grid: Any = figure.add_gridspec(down, across)
+    above: list[Axes] = []
+    if curves:
+        outer = figure.add_gridspec(2, 1, height_ratios=(rows, down))
+        above = list(outer[0].subgridspec(rows, -(-curves // rows)).subplots(squeeze=False).flat)
+        grid = outer[1].subgridspec(down, across)
+    axes = list(grid.subplots(sharex=True, squeeze=False).flat)
+    for ax in (*above[curves:], *axes[count:]):
         ax.remove()
     for place, ax in enumerate(axes[:count]):
         ax.tick_params(labelsize=8, labelbottom=place >= count - across)
         plain(ax)
-    return figure, axes[:count]
+    return figure, axes[:count], above[:curves]
 
 
 def _draw(

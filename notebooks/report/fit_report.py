@@ -75,7 +75,10 @@ def residual_table(fitted: RigFit) -> Grid:
 
 def doubts(fitted: RigFit) -> list[str]:
     """Keys that were not identified with the cure, and pairs that the logs hardly separate."""
-    lines = [f"not identified: {item.key}; {item.cure}" for item in fitted.unidentified]
+    by_cure: dict[str, list[str]] = {}
+    for item in fitted.unidentified:
+        by_cure.setdefault(item.cure, []).append(item.key)
+    lines = [f"not identified: {', '.join(keys)}; {cure}" for cure, keys in by_cure.items()]
     keys = [item.key for item in fitted.parameters]
     pairs = [
         f"{keys[a]} and {keys[b]} ({signed(float(fitted.correlation[a, b]), '.2f')})"
@@ -101,8 +104,9 @@ def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:
     if all(getattr(fitted.rig.uncertainty, key) >= getattr(before.uncertainty, key) for key in WORDS):
         return f"uncertainty of the fitted rig, widened: {', '.join(changed)}"
     return (
-        f"uncertainty of the fitted rig, for the person, contact and room of these logs: {', '.join(changed)}; widen "
-        f"it with --set uncertainty.KEY=VALUE for other people"
+        f"uncertainty of the fitted rig, for the person, contact and room of these logs, and sensors that are off by "
+        f"{fitted.offset_sd_K:g} K (SD; --offset K): {', '.join(changed)}; "
+        "widen it with --set uncertainty.KEY=VALUE for other people"
     )
 
 

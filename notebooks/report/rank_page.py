@@ -152,7 +152,7 @@ def icon_parts(ranking: Ranking, icons: IconSet, rig: Rig) -> Iterator[Block]:
     """Yield every icon: what it scores, its cue text, and an overview of its run."""
     from thermicon.circuit import simulate
 
-    from ..figures.overview import FELT_TAIL_S, felt_overview
+    from ..figures.overview import FELT_TAIL_S, felt, overview
 
     members = list(icons)
     yield Heading("Icons")
@@ -169,6 +169,6 @@ def icon_parts(ranking: Ranking, icons: IconSet, rig: Rig) -> Iterator[Block]:
         text = str(icon)  # without the head of its file
         yield Code(text[text.find("\nicon ") + 1 :].rstrip("\n"))
         if place < MOST_OVERVIEWS:
-            data = small_png(felt_overview(simulate(icon, rig, tail_s=FELT_TAIL_S), rig.changes), OVERVIEWS)
+            data = small_png(overview(*felt(simulate(icon, rig, tail_s=FELT_TAIL_S)), rig.changes), OVERVIEWS)
             alt = f"temperatures, heat flow, current and sensation of {icon.name}"
             yield Picture("", alt, OVERVIEW_PIXELS, data)

@@ -42,15 +42,48 @@ A_POINT = 0.01
 
 
 def rank_report(
-    made: SetReport, title: str, cures: Mapping[str, str] | None = None, following: str = "", details: bool = False
+    made: SetReport,
+    title: str,
+    cures: Mapping[str, str] | None = None,
+    following: str = "",
+    details: bool = False,
+    shown: bool = False,
 ) -> list[Block]:
     """Report a ranking with what was asked of it.
 
     ``cures`` explain by the name of an icon how it could be reached, ``following`` is the command to give next. Without
-    ``details``, all but the first note, the reasons and what the numbers depend on are left out.
+    ``details``, all but the first note, the reasons and what the numbers depend on are left out. Where the table is
+    ``shown`` already, the rest follows, and the command comes last.
     """
-    ranking, icons = made.ranking, made.ranking.best_first
-    notes = [Text(line, "warn") for line in trouble_lines(ranking.icons, cures or {})]
+    ranking = made.ranking
+    advice = edit_text(made, ranking.worst) if ranking.worst and not made.ways else ""  # tried, and told so
+    chosen = list(choice_lines(made.choice, made.goal)) if made.choice else []
+    by = "" if ranking.observer == "shipped" else f", observer {ranking.observer}"
+    table = f" The table is about all {len(ranking.icons)} icons together." * bool(chosen)
+    short = f"Predicted, not measured: {crowd_text(ranking)}{by}. {intervals_text(ranking).strip()}{table}"
+    told: list[Block] = [Heading(chosen[0], 3), Bullets(tuple(chosen[1:]))] if chosen else []
+    lines = filter(None, [advice[:1].upper() + advice[1:], f"Next: {following}" if following else ""])
+    next_step = [Text("\n".join(lines))]
+    return [
+        *([Heading(title, 1)] if title and not shown else []),
+        *([Text("\n".join(goal_lines(made.goal, "", made.ways)))] if made.goal else []),
+        Facts(cards(made), cards=True),
+        *([] if shown else next_step),
+        *told,
+        *([] if details else edits_blocks(made)),
+        *([] if shown else table_report(made, "", cures, details)),
+        *(detail_blocks(made) if details else []),
+        Text(caveat(ranking) if details else f"{short} More: {'rank ' * (not following)}--details"),
+        *(next_step if shown else []),
+    ]
+
+
+def table_report(
+    made: SetReport, title: str, cures: Mapping[str, str] | None = None, details: bool = False
+) -> list[Block]:
+    """What of a ranking's report needs neither intervals nor edits: notes, and the table of icons."""
+    icons = made.ranking.best_first
+    notes = [Text(line, "warn") for line in trouble_lines(made.ranking.icons, cures or {})]
     outside = [Text(line, "note") for line in outside_lines(icons)]
     shown = max(1, min(len(cures or {}), 3))
     left = len(notes[shown:]) + len(outside[1:])
@@ -58,25 +91,8 @@ def rank_report(
         # What no experiment varied stands on the first screen, beside the worst of what cannot be played.
         more = Text(f"{count_of(left, 'more note')}: thermicon rank --details", "warn")
         notes, outside = notes[:shown], [*outside[:1], more]
-    advice = edit_text(made, ranking.worst) if ranking.worst and not made.ways else ""  # tried, and told so
-    chosen = list(choice_lines(made.choice, made.goal)) if made.choice else []
-    by = "" if ranking.observer == "shipped" else f", observer {ranking.observer}"
-    table = f" The table is about all {len(icons)} icons together." * bool(chosen)
-    short = f"Predicted, not measured: {crowd_text(ranking)}{by}. {intervals_text(ranking).strip()}{table}"
-    told: list[Block] = [Heading(chosen[0], 3), Bullets(tuple(chosen[1:]))] if chosen else []
-    return [
-        *([Heading(title, 1)] if title else []),
-        *([Text("\n".join(goal_lines(made.goal, "", made.ways)))] if made.goal else []),
-        Facts(cards(made), cards=True),
-        Text("\n".join(filter(None, [advice[:1].upper() + advice[1:], f"Next: {following}" if following else ""]))),
-        *told,
-        *([] if details else edits_blocks(made)),
-        *notes,
-        *outside,
-        icon_table(icons, made, None if details else MOST_ROWS),
-        *(detail_blocks(made) if details else []),
-        Text(caveat(ranking) if details else f"{short} More: {'rank ' * (not following)}--details"),
-    ]
+    heading = [Heading(title, 1)] if title else []
+    return [*heading, *notes, *outside, icon_table(icons, made, None if details else MOST_ROWS)]
 
 
 def rules_report(ranking: Ranking, title: str) -> list[Block]:

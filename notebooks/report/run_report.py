@@ -169,6 +169,8 @@ def sweep_lines(frame: pd.DataFrame, names: Sequence[str], key: str) -> Iterator
 def sweep_report(frame: pd.DataFrame, key: str, quantities: Sequence[str]) -> list[Grid]:
     """Report one row per icon and value: each quantity with its 95 % interval for a new laboratory, where it has one.
 
+    Without quantities of perception, rows say what the rig does.
+
     >>> import pandas as pd
     >>> row = {"icon": "dip", "contact.area_cm2": 4.0, "named": 0.82, "named_low": 0.7, "named_high": 0.91}
     >>> [cell.text for cell in sweep_report(pd.DataFrame([row]), "contact.area_cm2", ["named"])[0].rows[0]]
@@ -176,6 +178,10 @@ def sweep_report(frame: pd.DataFrame, key: str, quantities: Sequence[str]) -> li
     """
     from thermicon.perception.ranking.swept import ALL, OF_THE_SET
 
+    if not quantities:
+        played = [(str(row["icon"]), _value(row[key]), *_played(row)) for row in frame.to_dict("records")]
+        columns: tuple[str, ...] = ("icon", key, "miss, K", "skin, °C", "safety")
+        return [grid(columns, played, (key, "miss, K"), columns)]
     of_icons = not {*quantities} <= {*OF_THE_SET}
     rows = []
     for row in frame.to_dict("records"):
@@ -188,6 +194,16 @@ def sweep_report(frame: pd.DataFrame, key: str, quantities: Sequence[str]) -> li
 
 def _value(value: float | str) -> str:
     return value if isinstance(value, str) else f"{value:g}"
+
+
+def _played(row: Mapping[Any, Any]) -> tuple[str, str, str]:
+    """The largest miss in K and the skin in °C of a run, and whether it is safe; dashes where there is none."""
+    import pandas as pd
+
+    if pd.isna(row["duration_s"]):
+        return ("–", "–", "not possible")
+    miss = "–" if pd.isna(row["largest_miss_K"]) else number(abs(row["largest_miss_K"]), 3)
+    return (miss, span(row["skin_min_C"], row["skin_max_C"], "").strip(), str(row["safety"]))
 
 
 def _cell(row: Mapping[Any, Any], quantity: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -78,11 +78,13 @@ def report_of(
     goal: Goal | None = None,
     warnings: tuple[str, ...] = (),
     workers: int | str | None = None,
+    first: Callable[[SetReport], None] | None = None,
     **how: Any,
 ) -> SetReport:
     """Rank a set; choose of it, judge it by a goal and edit its pairs, as far as that is asked.
 
     `draws` are those of an interval, `how` other arguments of `rank`. With `make_edits`, the edited set is ranked too.
+    `first` gets the ranking before the rest is computed.
     """
     from thermicon.perception import choose, rank
     from thermicon.perception.kernels.parallel import beside, step_counter
@@ -99,6 +101,8 @@ def report_of(
         goal.check_draws(draws)
     with progress_bar("ranking") as progress:
         ranking = without = rank(icons, rig, parameters=0, workers=workers, progress=progress, **how)
+    if first is not None:
+        first(SetReport(ranking, warnings=warnings))
     # One edit takes as long as the draws, mostly on one core; more of them wait for the draws.
     cores = workers if isinstance(workers, int) else None
     edited = beside(lambda: cheapest_edits(without, edits), cores if edits == "worst" else 1)

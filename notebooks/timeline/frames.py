@@ -15,8 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermicon.base.words.number_text import signed
+from thermicon.circuit.solver.simulate import duration_s
 from thermicon.perception.sensation.received import uniform_clock
 
+from .marks import FELT_DPRIME
 from .scene import Drawing, Scene
 
 Floats = NDArray[np.float32]
@@ -100,12 +102,26 @@ def frame_of(scene: Scene, points: int = MOST_POINTS) -> CanvasFrame:
         panels.append(_current(drawing, curves))
     if len(drawing.percept.psi_cold) >= rows:
         panels.append(_sensation(drawing, curves))
+    meta["play"] = _play(drawing)
     meta["time"] = {"t0": float(trace.time_s[0]), "dt": dt * every, "n": len(curves.buffers[0])}
     if not scene.stale:
         panel = "current" if trace.control == "current" else "temperature"
         for told in map(asdict, drawing.handles):
             meta["handles"].append({"t": told.pop("time_s"), "y": told.pop("level"), "panel": panel, **told})
     return CanvasFrame({**meta, "panels": panels}, tuple(curves.buffers))
+
+
+def _play(drawing: Drawing) -> dict[str, Any]:
+    """How long a preview lasts, to the end of the icon and of what is felt of it, and what it says of it."""
+    percept, end_s = drawing.percept, float(drawing.trace.time_s[-1])
+    told: dict[str, Any] = {"felt": percept.felt, "share": percept.detected_probability}
+    last_s = duration_s(drawing.icon, drawing.rig)
+    if percept.felt:
+        last_s = max(last_s, percept.onset_s or 0.0)
+        faint = np.maximum(percept.psi_cold, percept.psi_warm)[percept.time_s >= last_s] < FELT_DPRIME
+        last_s += percept.dt_s * int(faint.argmax()) if faint.any() else end_s
+        told |= {"onset": percept.onset_s, "quality": percept.channel}
+    return {**told, "until": min(float(last_s), end_s)}
 
 
 def _temperature(drawing: Drawing, curves: _Curves) -> dict[str, Any]:

@@ -22,6 +22,8 @@ import traitlets
 from thermicon.icons.model.units import UNITS
 from thermicon.icons.model.words import CLAUSES, CONTROLS, EXAMPLES, STARTS, VOCABULARY
 
+from ..timeline.frames import WORDS
+
 Message = dict[str, Any]
 
 PARTS = (
@@ -34,18 +36,23 @@ PARTS = (
     "panel",
     "handles",
     "timeline",
+    "play",
+    "reel",
+    "player",
+    "sides",
     "codemirror",
     "highlight",
     "complete",
     "troubles",
     "editor",
+    "palette",
     "unsaved",
     "strip",
     "design",
     "heat",
     "main",
 )
-STYLES = ("theme", "layout", "editor", "timeline", "heat")
+STYLES = ("theme", "layout", "editor", "timeline", "play", "heat")
 
 
 def module_text() -> str:
@@ -78,6 +85,7 @@ def cue_words() -> dict[str, Any]:
     return {
         "keywords": sorted({*CLAUSES, *CONTROLS, *STARTS.values()}.union(*VOCABULARY.values())),
         "units": sorted(units, key=lambda unit: (-len(unit), unit)),
+        "shapes": WORDS["shapes"],
         "examples": {word: text.split('"')[1] for word, text in EXAMPLES.items() if '"' in text},
     }
 

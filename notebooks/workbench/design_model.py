@@ -18,6 +18,7 @@ from ..timeline.dragging import drag
 from ..timeline.frames import DRAGGED_POINTS, MOST_POINTS, CanvasFrame, frame_of
 from ..timeline.scene import Scene, scene, with_notes
 from .knobs import knobs_of, turned
+from .versions import Version
 
 Message = Mapping[str, Any]
 MOST_LETTERS = 1_000_000
@@ -41,6 +42,7 @@ class DesignModel:
         self._drag: tuple[int, str] | None = None  # the corner, and the text before, from which every step starts
         self._moving = False
         self.scene: Scene = scene(self.text, rig, icon, self.observer)
+        self.pinned: Version | None = None
         self.document.history = self.document.history.chosen(self.scene.icon)
         self._tell: list[Callable[[], None]] = []
 
@@ -55,12 +57,17 @@ class DesignModel:
         return self._drag is not None
 
     @property
+    def version(self) -> Version:
+        """What is designed now, as it could be pinned."""
+        return Version(self.scene, self.nominal, self.values)
+
+    @property
     def observer(self) -> Observer:
         """The nominal person."""
         return Observer.load() if self.model is None else self.model.nominal
 
     def on_change(self, tell: Callable[[], None]) -> None:
-        """Call a function after each message that changed the text, the rig or the icon that is shown."""
+        """Call a function after each message that changed the text, the rig, the icon shown or what is pinned."""
         self._tell.append(tell)
 
     def receive(self, message: Message) -> CanvasFrame:
@@ -108,7 +115,7 @@ class DesignModel:
         return self._answer(lambda: self.text)
 
     def _answer(self, act: Callable[[], str | None], seq: int = 0) -> CanvasFrame:
-        began, before = time.perf_counter(), (self.text, self.rig, self.scene.icon)
+        began, before = time.perf_counter(), (self.text, self.rig, self.scene.icon, self.pinned)
         self._moving = False
         shown: str | None = None
         try:
@@ -120,10 +127,12 @@ class DesignModel:
             shown = self.text
         try:
             made = frame_of(self.scene, DRAGGED_POINTS if self._moving else MOST_POINTS)
+            if self.pinned is not None:
+                made = self.pinned.behind(made)
         except Exception as wrong:
             self.scene = replace(with_notes(self.scene, f"drawing failed: {wrong}"), drawing=None, stale=True)
             made = frame_of(self.scene)
-        if (self.text, self.rig, self.scene.icon) != before:
+        if (self.text, self.rig, self.scene.icon, self.pinned) != before:
             self.document.changed()
             for tell in self._tell:
                 tell()
@@ -154,6 +163,16 @@ class DesignModel:
                 self.document.aim(str(message.get("text")))
                 self._draw()
                 return self.text
+            case "pin":
+                if self.scene.stale:
+                    raise ValueError("a text with errors has no curves to pin")
+                self.pinned = self.version
+                return None
+            case "unpin":
+                self.pinned = None
+                return None
+            case "swap":
+                return self._swap()
             case "apply":
                 return self._mend(message.get("line"))
         raise ValueError(f"the page sent an unknown message: {kind}")
@@ -191,6 +210,17 @@ class DesignModel:
             return self.text
         self.document.history = history
         self._draw(history.now.icon)
+        return self.text
+
+    def _swap(self) -> str | None:
+        """Change sides: what is pinned becomes the design, and the design what is pinned."""
+        if (other := self.pinned) is None or self.scene.stale:
+            raise ValueError("nothing is pinned" if other is None else "a text with errors cannot be pinned")
+        self.pinned = self.version
+        self.nominal, self.values = other.nominal, dict(other.values)
+        self.rig, self._told = turned(self.nominal, self.values)
+        self.document.history = self.document.history.changed(other.scene.text)
+        self._draw(other.scene.icon)
         return self.text
 
     def _mend(self, line: object) -> str:

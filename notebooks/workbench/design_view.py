@@ -14,6 +14,7 @@ from ..timeline.frames import CanvasFrame
 from .canvas import Canvas
 from .design_model import DesignModel
 from .knobs import Knob, knobs_of
+from .reel import reel_of, shipped_texts
 
 SHARED = "globalThis.thermiconCanvas"
 
@@ -45,7 +46,10 @@ class DesignView:
         self.canvas.on_message(self._receive)
         self.sliders: dict[str, Any] = {}
         self._labels: dict[str, widgets.HTML] = {}
-        self.on_page: dict[str, Callable[[Mapping[str, Any]], None]] = {}
+        self.on_page: dict[str, Callable[[Mapping[str, Any]], None]] = {
+            "reel": lambda _: self._send_reel(),
+            "palette": lambda _: self.canvas.send({"type": "palette", "sets": shipped_texts()}),
+        }
         self.reset = widgets.Button(description="Reset", tooltip="all sliders back to the rig's values")
         self.reset.layout = widgets.Layout(width="68px", height="26px", margin="0")
         self.reset.on_click(self._reset)
@@ -53,6 +57,8 @@ class DesignView:
         self.knobs = widgets.Box([]).add_class("thermicon-knobs")
         self._make_knobs()
         self.box = widgets.VBox([self.knobs, self.canvas]).add_class("thermicon-design")
+        self.folded = False
+        self.fold()
         self.send(design.frame())
 
     def send(self, frame: CanvasFrame) -> None:
@@ -64,6 +70,11 @@ class DesignView:
         self.send(self.design.take_rig(rig))
         self._make_knobs()
 
+    def fold(self) -> None:
+        """Hide the knobs, or show them again."""
+        self.folded = not self.folded
+        (self.box.add_class if self.folded else self.box.remove_class)("thermicon-folded")
+
     def _make_knobs(self) -> None:
         self.sliders, self._labels = {}, {}
         self.knobs.children = (*(self._knob(knob) for knob in knobs_of(self.design.nominal)), self.reset)
@@ -74,13 +85,22 @@ class DesignView:
             self.send(self.design.receive({"type": "hello", "seq": message.get("seq", 0)}))
             return
         self.send(self.design.receive(message))
+        if message.get("type") == "swap":
+            self._make_knobs()
+
+    def _send_reel(self) -> None:
+        """Send the curves of all icons, which the page plays one after another."""
+        frames, why = reel_of(self.design)
+        buffers = [array.tobytes() for frame in frames for array in frame.buffers]
+        metas = [{**frame.meta, "buffers": len(frame.buffers)} for frame in frames]
+        self.canvas.send({"type": "reel", "frames": metas, "why": why}, buffers=buffers)
 
     def _knob(self, knob: Knob) -> widgets.VBox:
         label = widgets.HTML()
         self._labels[knob.key] = label
         digits = len(f"{knob.step:g}".partition(".")[2])
         self.sliders[knob.key] = made = widgets.FloatSlider(
-            value=knob.value,
+            value=self.design.values.get(knob.key, knob.value),
             min=knob.low,
             max=knob.high,
             step=knob.step,

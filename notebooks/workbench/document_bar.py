@@ -37,6 +37,7 @@ class DocumentBar:
         self.view, self.design = view, view.design
         self._taken = self.design.nominal.name  # what is selected of the list of rigs
         self._rigs: dict[str, Rig] = {}
+        self._names = {self.design.nominal: self._taken}  # of rigs that were taken, as the list has them
         self.title, self.said = widgets.HTML(), widgets.HTML()
         self.buttons = {
             name: self._button(name, hint, act)
@@ -44,6 +45,7 @@ class DocumentBar:
                 ("Open", "a cue file or a shipped set", lambda: self._toggle("open")),
                 ("Save", "to the file it came from (Ctrl+S)", self.save),
                 ("Save as", "under another name", lambda: self._toggle("save")),
+                ("Sliders", "contact, area, rest temperature and current limit of the rig", self.view.fold),
                 ("Undo", "Ctrl+Z in text or time line", lambda: self._step("undo")),
                 ("Redo", "Ctrl+Shift+Z in text or time line", lambda: self._step("redo")),
                 ("?", "what can be dragged, clicked and pressed", lambda: self._toggle("help")),
@@ -91,6 +93,11 @@ class DocumentBar:
         self.title.value = fragment("marked", document.title, f"thermicon-file {kind}".strip())
         self.buttons["Undo"].disabled, self.buttons["Redo"].disabled = not history.past, not history.future
         self.buttons["Save"].disabled = not document.dirty and document.path is not None
+        count = len(self.design.values)
+        self.buttons["Sliders"].description = f"Sliders ({count} set)" if count else "Sliders"
+        if (name := self._names.get(self.design.nominal, self._taken)) != self._taken:
+            self._taken = name  # a version on another rig took the place of this one
+            self._offer_rigs()
         self.say(document.warning(), "th-caution")
 
     def say(self, text: str, kind: str = "th-good") -> None:
@@ -106,9 +113,9 @@ class DocumentBar:
         self._after(f"saved {self.document.save().name}")
 
     def beside(self, design: bool) -> None:
-        """Show undo and redo here where the design view, which has its own, is not shown."""
-        for name in ("Undo", "Redo"):
-            self.buttons[name].layout.display = "none" if design else ""
+        """Show undo and redo here where the design view, which has its own, is not shown, and sliders where it is."""
+        for name in ("Undo", "Redo", "Sliders"):
+            self.buttons[name].layout.display = "none" if design == (name != "Sliders") else ""
 
     def saved_by_key(self, message: Mapping[str, Any]) -> None:
         """Ctrl+S in text or time line: where there is no file, the notebook's own saving is enough."""
@@ -138,6 +145,7 @@ class DocumentBar:
             self._offer_rigs()  # the list goes back to the rig that is still used
             raise
         self._taken = name
+        self._names[self.design.nominal] = name
         self.say("")
 
     def _offer_rigs(self) -> None:

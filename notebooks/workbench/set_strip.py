@@ -34,6 +34,7 @@ class SetStrip(LiveView[SetRequest]):
         self._send = send
         self.ranking: Ranking | None = None
         self._source: SetRequest | None = None
+        self._pinned: tuple[SetRequest, Ranking] | None = None
         self._sent: dict[str, Any] = {}
         self._why = ""
         self._met: bool | None = None
@@ -69,7 +70,20 @@ class SetStrip(LiveView[SetRequest]):
         people = 0 if ranking is None else ranking.people
         about = self._why if stale and self._why else f"predicted for {people} virtual people" if people else ""
         numbers = {"set": whole, "icon": icon, "felt": felt, "goal": goal, "met": self._met, "binding": self._binding}
-        return {"type": "strip", **numbers, "stale": stale, "rough": people < WELL[0], "about": about}
+        sides = []
+        if (pinned := self.design.pinned) is not None:
+            sides = [pinned.row("pinned", self.pinned), self.design.version.row("now", ranking, stale)]
+        return {"type": "strip", **numbers, "stale": stale, "rough": people < WELL[0], "about": about, "sides": sides}
+
+    @property
+    def pinned(self) -> Ranking | None:
+        """The ranking of the pinned version's set; None where there is none yet."""
+        if (pinned := self.design.pinned) is None:
+            return None
+        known = self._pinned is not None and self._pinned[0] == pinned.request
+        if self._source == pinned.request and self.ranking is not None and (self.known(pinned.request) or not known):
+            self._pinned = pinned.request, self.ranking
+        return self._pinned[1] if self._pinned is not None and self._pinned[0] == pinned.request else None
 
     def _request(self) -> SetRequest:
         return self.design.text, self.design.rig
@@ -95,6 +109,17 @@ class SetStrip(LiveView[SetRequest]):
         if goal and any(part.people for part in Goal.parse(goal).parts):
             job.on_page(partial(self._take, with_intervals(made, draws_of(model), job.go_on), request))
         job.on_page(partial(self._finish, request))
+        if (pinned := self.design.pinned) is not None and self.pinned is None:  # it was changed before it was ranked
+            before, rig = read_text(pinned.scene.text), pinned.scene.rig
+            if before.icons is not None and why_not(before) is None:
+                made = rank(
+                    before.icons, rig, people=people, parameters=0, observer=model, workers=1, progress=job.go_on
+                )
+                job.on_page(partial(self._take_pinned, made, pinned.request))
+
+    def _take_pinned(self, made: Ranking, request: SetRequest) -> None:
+        self._pinned = request, made
+        self.tell()
 
     def _take(self, made: Ranking, request: SetRequest) -> None:
         """Show a ranking, and whether it meets the goal, which is part of its text."""

@@ -20,6 +20,7 @@ from ..figures.style import new_figure
 from ..report.blocks import Bullets, fragment, shown
 from ..report.rank_report import rank_report
 from ..report.set_report import SetReport
+from ..report.sets_report import sets_report
 from .design_model import DesignModel
 from .design_view import SideCanvas
 from .live_view import BackgroundJob, BackgroundWorker, LiveView, button
@@ -37,16 +38,20 @@ class SetView(LiveView[SetRequest]):
     """The set of one ``DesignModel``, ranked while its tab is ``shown``; ``box`` holds the widgets.
 
     ``show_text`` is called with the text after an edit is applied; ``known`` gives the ranking of a request without
-    intervals, where another view has made it.
+    intervals, where another view has made it, and ``pinned`` that of the pinned version.
     """
 
     settles_s = 0.25
 
     def __init__(
-        self, design: DesignModel, show_text: ShowText, known: Callable[[SetRequest], Ranking | None] = lambda _: None
+        self,
+        design: DesignModel,
+        show_text: ShowText,
+        known: Callable[[SetRequest], Ranking | None] = lambda _: None,
+        pinned: Callable[[], Ranking | None] = lambda: None,
     ) -> None:
         super().__init__(design)
-        self._known = known
+        self._known, self._pinned = known, pinned
         self._show_text = show_text
         self.made: RankedSet | None = None
         self.picked: tuple[str, str] | None = None
@@ -54,8 +59,8 @@ class SetView(LiveView[SetRequest]):
         self.editor, self.chooser = BackgroundWorker(self._no_edit), BackgroundWorker(self._no_choice)
         self.heat, self.overlay = SideCanvas("heat"), SideCanvas("traces")
         self.heat.on_message(lambda message: self._safely(lambda: self._cell(message)))
-        names = ("scores", "status", "choice", "table", "notes", "pair", "edit_text", "why", "map", "caveat")
-        self.said = {name: widgets.HTML() for name in names}
+        names = ("scores", "status", "choice", "versions", "table", "notes", "pair", "edit_text", "why", "map")
+        self.said = {name: widgets.HTML() for name in (*names, "caveat")}
         said = self.said
         self.apply = widgets.Button(description="Apply edit", disabled=True, layout={"width": "100px"})
         self.apply.on_click(lambda _: self._safely(self.apply_edit))
@@ -73,7 +78,7 @@ class SetView(LiveView[SetRequest]):
         self.body = widgets.VBox([_row(table, self._maps), said["notes"], self._below, said["caveat"]])
         said["caveat"].add_class("thermicon-safety")
         said["choice"].add_class("thermicon-choice").layout.display = "none"
-        self.box = widgets.VBox([top, said["choice"], self.body]).add_class("thermicon-set")
+        self.box = widgets.VBox([top, said["choice"], said["versions"], self.body]).add_class("thermicon-set")
         self.body.layout.display = "none"
         self.stale_parts = self.body, said["scores"], said["choice"]
         self._say("the set is ranked when this tab opens")
@@ -96,6 +101,16 @@ class SetView(LiveView[SetRequest]):
     def _show_finished(self) -> None:
         if self.made is not None:
             self._say(f"{self.made.ranking.people} people")
+            self._compare(self.made.ranking)
+
+    def _compare(self, ranking: Ranking) -> None:
+        """The set beside that of the pinned version, as ``thermicon compare`` does."""
+        before, other = self.design.pinned, self._pinned()
+        html = ""
+        if before is not None and other is not None and before.request != self._source():
+            table, *_, last = sets_report(("pinned", "now"), (other, ranking))
+            html = shown(table, last)
+        self.said["versions"].value, self.said["versions"].layout.display = html, "" if html else "none"
 
     def pick(self, a: str, b: str) -> None:
         """Select a pair: show both icons together, why they are confused, and the cheapest edit."""
@@ -207,6 +222,7 @@ class SetView(LiveView[SetRequest]):
             said[name].value = html
         people = f"{ranking.people} people"
         rough = ranking.people < WELL[0]
+        self._compare(ranking)
         self._say(people if well else f"rough: {people}; refining …" if rough else f"{people}; intervals follow …")
         for part in (said["scores"], self._table):
             (part.add_class if rough else part.remove_class)("thermicon-rough")

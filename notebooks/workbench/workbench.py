@@ -217,10 +217,10 @@ class Workbench:
             design.send(self._design.show_text(text))
 
         self.set_strip = strip = SetStrip(self._design, design.canvas.send)
-        self.set_view = ranked = SetView(self._design, show_text, strip.known)
+        self.set_view = ranked = SetView(self._design, show_text, strip.known, lambda: strip.pinned)
         self.export_view = export = ExportView(self._design, self._folder)
         self.bar = bar = DocumentBar(design)
-        design.on_page = {"save": bar.saved_by_key, "left": bar.take_left, "hello": lambda _: strip.tell(anew=True)}
+        design.on_page |= {"save": bar.saved_by_key, "left": bar.take_left, "hello": lambda _: strip.tell(anew=True)}
         views = [design.box, ranked.box, export.box]
         tabs = widgets.Tab(views, titles=("Design", "Set", "Export"))
 

@@ -132,7 +132,7 @@ class ShownSet:
         observer, people, form = laboratory
         felt = respond(at, people, observer, detection=False)
         trials = few_named(len(self.icons)) if form == "naming" else samples
-        return identify(felt, form, people, observer, self.seed, trials)[1].probability
+        return identify(felt, form, people, observer, self.seed, trials).probability
 
 
 def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> ShownSet:

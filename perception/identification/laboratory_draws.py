@@ -270,7 +270,8 @@ def _acting(
     def named(constants: Array) -> Array:
         observer, people, form = laboratories.with_values(constants, count)
         felt = respond(few, people, observer, detection=False)
-        d_prime, confusion = identify(felt, form, people, observer, seed, LEAST, task=task)
+        d_prime = memory_dprime(felt, form, people.memory, observer, task)
+        confusion = identify(felt, form, people, observer, seed, LEAST, task=task, d_prime=d_prime)
         return np.stack([d_prime, with_pairs(confusion.probability, observer.pair_spread, pairs)])
 
     def acts(k: int) -> bool:
@@ -305,9 +306,9 @@ def scored(
     icons = len(few.names)
     samples = few_named(icons) if form == "naming" else min(SAMPLES, max(LEAST, NAMED // icons))
     felt = respond(few, people, observer, times=True)
-    d_prime, confusion = identify(felt, form, people, observer, seed, samples, task=task)
-    if form != apart_by:
-        d_prime = memory_dprime(felt, apart_by, people.memory, observer, task)
+    d_prime = memory_dprime(felt, apart_by, people.memory, observer, task)
+    known = d_prime if form == apart_by else None
+    confusion = identify(felt, form, people, observer, seed, samples, task=task, d_prime=known)
     probability = with_pairs(confusion.probability, observer.pair_spread, pairs)
     correct, bits = proportion_correct(probability), information_bits(probability)
     named, found = probability[invited].mean(axis=0), felt.detected

@@ -88,7 +88,9 @@ class ReceptorTemperatures:
     def _of(
         cls, played: Sequence[Batch], depths_m: tuple[Both[float], ...], crowd: People, rig: Rig, icons: Sequence[Icon]
     ) -> ReceptorTemperatures:
-        cold, warm = (np.stack([batch.values[k] for batch in played]) for k in range(2))
+        several = len(played) > 1
+        cold, warm = (np.stack([each.values[k] for each in played]) if several else played[0].values[k][np.newaxis]
+                      for k in range(2))  # fmt: skip
         names, first = tuple(icon.name for icon in icons), played[0]
         return cls((cold, warm), depths_m, crowd.corneum_m(rig), first.time_s, rig.site, rig.contact.area_m2, names)
 
@@ -192,16 +194,16 @@ def identify(
     samples: int = SAMPLES,
     first: int = 0,
     task: Task = USUAL,
-) -> tuple[Array, Confusion]:
-    """Pairwise d′ from memory (people, icons, icons), and confusions with the noise of people numbered from `first`."""
-    d_prime = memory_dprime(felt, form, crowd.memory, observer, task)
+    d_prime: Array | None = None,
+) -> Confusion:
+    """Confusions with the noise of people numbered from `first`; `d_prime` are those of the form, where known."""
     if form == "naming":
-        named = name_directly(
+        return name_directly(
             felt.episodes, observer, memory=crowd.memory, louder=task.louder(crowd.memory, form), lapse=crowd.lapse,
             seed=seed, samples=min(samples, NAMED_SAMPLES), first=first,
         )  # fmt: skip
-        return d_prime, named
-    return d_prime, confuse(d_prime, lapse=crowd.lapse, seed=seed, samples=samples, first=first)
+    apart = memory_dprime(felt, form, crowd.memory, observer, task) if d_prime is None else d_prime
+    return confuse(apart, lapse=crowd.lapse, seed=seed, samples=samples, first=first)
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,5 +245,9 @@ def identify_by(
 ) -> Identification:
     """The same by every form, of which laboratories have these shares."""
     forms, samples = list(shares), form_samples(shares, felt.episodes.counts.shape[1])
-    found = {form: identify(felt, form, crowd, observer, seed, samples[form], first, task) for form in forms}
-    return Identification(found[forms[0]][0], {form: named for form, (_, named) in found.items()}, shares)
+    d_prime = memory_dprime(felt, forms[0], crowd.memory, observer, task)
+    known = {forms[0]: d_prime}
+    found = {
+        form: identify(felt, form, crowd, observer, seed, samples[form], first, task, known.get(form)) for form in forms
+    }
+    return Identification(d_prime, found, shares)

@@ -251,8 +251,9 @@ def _one_of(text: str, column: str, known: tuple[str, ...], where: str, of: str 
 def _number(text: str, column: str, where: str) -> float:
     value = as_number(text)
     if not math.isfinite(value):
+        cure = "leave it empty where it is not known" if column in OPTIONAL else "correct it, or remove the row"
         raise TrialsError(
-            f"{where}: {column} is {quoted(text) if text else 'empty'}, not a number with a decimal point"
+            f"{where}: {column} is {quoted(text) if text else 'empty'}, not a number with a decimal point; {cure}"
         )
     return value
 

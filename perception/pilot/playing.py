@@ -115,7 +115,7 @@ class Stage:
             felt = respond(self.played, people, observer)
             form = MEMORY_FORMS[int(some.form[k])]
             samples = trials if form == "naming" else SAMPLES
-            named = identify(felt, form, people, observer, int(some.seed[k]), samples)[1].probability
+            named = identify(felt, form, people, observer, int(some.seed[k]), samples).probability
             if form == "naming":
                 named = without_chance(named, samples)
             reported = felt.detected.probability.clip(LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY)

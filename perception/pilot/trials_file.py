@@ -31,21 +31,25 @@ ALIKE = 0.55
 """A cell that is so much alike an icon is a slip of the pen, not an instruction."""
 UNFELT = ("", "none", "no answer", "no response", "no_response", "not felt", "timeout", "null", "–", "-", "--", "---")
 """What experiments write where nothing was answered: the play was not felt."""
+SILENT = "none"
+"""What a cell that says in other words that nothing was felt may be said to stand for."""
 NOTHING = (*UNFELT, "missing", *NOTHINGS)
 """The same, and what stands for trials that are lost: these are none."""
 WIDE = re.compile(
-    r"(?:trial[_ .-]?(\d+)[_ .-])?(icon|presented|shown|stimulus|answer|respon(?:ded|se)|trial)[_ .-]?(\d+)?", re.I
+    r"(?:(?:trial[_ .-]?)?(\d+)[_ .-])?(icon|presented|shown|stim(?:ulus)?|answer|resp(?:onded|onse)?|trial)"
+    r"[_ .-]?(\d+)?",
+    re.I,
 )
-ASKED, WIDE_EXAMPLE = ("icon", "presented", "shown", "stimulus"), "participant,icon_1,answer_1,icon_2,answer_2"
+ASKED, WIDE_EXAMPLE = ("icon", "presented", "shown", "stim", "stimulus"), "participant,icon_1,answer_1,icon_2,answer_2"
 """Words of `WIDE` for what was presented, and how such a line begins."""
 
 OTHERS = {
-    "participant": "(?i)participant|subj|who|vp|person|proband|^id$",
-    "trial": "(?i)^trial|trial_?(n|index|number)|^n[or]$",
-    "presented": "(?i)icon|shown|stim|target",
-    "responded": "(?i)answer|respon|key|choice|guess",
+    "participant": "(?i)participant|subj|who|vp|person|proband|observ|^id$|_id$|response ?id$",
+    "trial": "(?i)^trial|trial_?(n|index|number|sequence)|durchgang|^n[or]$",
+    "presented": "(?i)icon|shown|stim|target|played|reiz",
+    "responded": "(?i)answer|resp|key|choice|guess|antwort|felt|feel",
 }
-"""How experiments call our columns; of several, the first is proposed."""
+"""How experiments call our columns; of several, the first whose cells may be what is looked for is proposed."""
 ENDING = re.compile(r"(?i)\.(csv|cue|json|txt|toml|wav|png|mp4)$")
 
 
@@ -75,7 +79,8 @@ def read_trials(
     icons
         The set, its name or file, or the names of its icons.
     columns
-        What the file calls ours, such as ``{"responded": "answer"}``, and its icons, such as ``{"dip": "num_2"}``.
+        What the file calls ours, such as ``{"responded": "answer"}``, its icons, such as ``{"dip": "num_2"}``, and what
+        was not felt, such as ``{"none": "nothing felt"}``.
 
     Returns
     -------
@@ -102,8 +107,14 @@ def read_trials(
         raise TrialsError("no file of answers is given; give at least one")
     names = tuple(each if isinstance(each, str) else each.name for each in given)
     places = {name: place for place, name in enumerate(names)}
-    theirs = {name: cell for name, cell in (columns or {}).items() if name not in places}
-    meant = _Cells(places, {cell: name for name, cell in (columns or {}).items() if name in places})
+    cells_meant = {*places, SILENT}
+    theirs = {name: cell for name, cell in (columns or {}).items() if name not in cells_meant}
+    for name in theirs.keys() - {*COLUMNS, "block"}:
+        raise TrialsError(
+            f"{name} is neither a column of answers nor an icon of the set; "
+            f"{did_you_mean(name, (*COLUMNS, 'block', *cells_meant))}"
+        )
+    meant = _Cells(places, {cell: name for name, cell in (columns or {}).items() if name in cells_meant})
     runs: dict[str, list[dict[tuple[str, str], tuple[int, int]]]] = {}
     lines: dict[tuple[str, tuple[str, str]], int] = {}
     passed, strange, digests, owner = 0, ("", ""), list[str](), dict[str, Path]()
@@ -117,9 +128,9 @@ def read_trials(
         if "responded" not in table.header and len(places.keys() & set(table.header)) > 1:
             if len(files) > 1:
                 raise TrialsError(f"{file}: a matrix of counts stands alone; give it without other files")
-            matrix = _matrix(file, table, places)
+            matrix = _matrix(file, table, places, meant)
             return replace(_counted(matrix[None], names, ("all",), file.name, digest), grouped=True)
-        for line, (participant, block, number, *said) in _asked(file, table, len(files) > 1):
+        for line, (participant, block, number, *said) in _asked(file, table, len(files) > 1, meant):
             where = f"{file}:{line}"
             cells = [meant.icon(cell) for cell in said]
             icon, answer = ("" if cell not in places and cell.casefold() in NOTHING else cell for cell in cells)
@@ -130,6 +141,13 @@ def read_trials(
             person, trial = label(participant, "participant", where), label(number, "trial", where)
             person = person if owner.setdefault(person, file) == file else file.stem
             key, own = (block, trial), runs.setdefault(person, [{}])
+            shown = places[_icon(icon, "presented", places, where)]
+            answered = places[_icon(answer, "responded", places, where)] if answer else silent
+            if own[-1] and key == next(reversed(own[-1])):
+                before, first_answer = own[-1][key]
+                if before == shown and max(first_answer, answered) >= len(names):  # two screens of one trial
+                    own[-1][key], passed = (shown, min(first_answer, answered)), passed + 1
+                    continue
             if key in own[-1]:
                 if len(own[-1]) == 1 or key != next(iter(own[-1])):
                     raise TrialsError(
@@ -137,8 +155,7 @@ def read_trials(
                         f"{lines[person, key]}; number the trials on, add a column block, or remove the copy"
                     )
                 own.append({})  # the numbers start anew, as they do with each block
-            lines[person, key], shown = line, places[_icon(icon, "presented", places, where)]
-            own[-1][key] = shown, places[_icon(answer, "responded", places, where)] if answer else silent
+            lines[person, key], own[-1][key] = line, (shown, answered)
     file = files[0]
     digest = digests[0] if len(files) == 1 else hashlib.sha256("".join(digests).encode()).hexdigest()[:16]
     check_labels(file, runs)
@@ -185,7 +202,7 @@ def _counted(counts: Array, icons: tuple[str, ...], people: tuple[str, ...], fil
     return Trials(icons, who, own[..., :-2], file, digest, own[..., -2], missing=lost)
 
 
-def _asked(path: Path, table: Table, each: bool) -> Iterator[tuple[int, list[str]]]:
+def _asked(path: Path, table: Table, each: bool, meant: _Cells) -> Iterator[tuple[int, list[str]]]:
     """Line, and participant, block, trial, icon and answer of each trial, from one row per trial or per participant.
 
     Where `each` file is of a participant, it is called like the file where it has no such column.
@@ -195,12 +212,16 @@ def _asked(path: Path, table: Table, each: bool) -> Iterator[tuple[int, list[str
     numbers = dict.fromkeys(number for number, asked in found if number and asked and "presented" not in table.header)
     if not numbers:
         require(
-            path, table, COLUMNS[1:] if own else COLUMNS, f"{EXAMPLE}, or, with one row per participant, {WIDE_EXAMPLE}"
+            path,
+            table,
+            COLUMNS[1:] if own else COLUMNS,
+            f"{EXAMPLE}, or, with one row per participant, {WIDE_EXAMPLE}",
+            meant,
         )
         for line, row in table.records((*COLUMNS, "block")):
             yield line, [own or row["participant"], row.get("block", ""), *(row[column] for column in COLUMNS[1:])]
         return
-    require(path, table, () if own else COLUMNS[:1], WIDE_EXAMPLE)
+    require(path, table, () if own else COLUMNS[:1], WIDE_EXAMPLE, meant)
     if single := [name for (number, asked), name in found.items() if number and (number, not asked) not in found]:
         raise TrialsError(f"{path}:{table.line}: {single[0]} stands alone; a trial has two columns: {WIDE_EXAMPLE}")
     for line, row in table.records(("participant", "block", *found.values())):
@@ -209,25 +230,34 @@ def _asked(path: Path, table: Table, each: bool) -> Iterator[tuple[int, list[str
             yield line, [own or row["participant"], row.get("block", ""), number, *pair]
 
 
-def _matrix(path: Path, table: Table, places: Mapping[str, int]) -> Array:
+def _matrix(path: Path, table: Table, places: Mapping[str, int], meant: _Cells) -> Array:
     """Counts (icons, icons + 2) of a matrix: rows are icons presented, columns answers, then not felt, and missing."""
     first, *names = (name for place, name in enumerate(table.header) if name or not place)
     none = [name for name in names if name not in places and name.casefold() in NOTHING]
     top = f"{path}:{table.line}"
     said = [
-        len(places) + (name.casefold() not in UNFELT) if name in none else places[_icon(name, "a column", places, top)]
+        len(places) + (name.casefold() not in UNFELT)
+        if name in none
+        else places[_icon(meant.icon(name), "a column", places, top)]
         for name in names
     ]
     counts: Array = np.zeros((len(places), len(places) + 2))
+    across, down = (re.search(OTHERS[name], first) for name in ("responded", "presented"))
+    turned = across is not None and (down is None or across.start() < down.start())  # rows are answers
     for line, row in table.records((first, *names)):
         where = f"{path}:{line}"
-        shown, cells = places[_icon(row[first], "a row", places, where)], [row[name] or "0" for name in names]
+        shown = places[_icon(meant.icon(row[first]), "a row", places, where)]
+        cells = [row[name] or "0" for name in names]
         if counts[shown].any() or shown not in said:
             raise TrialsError(f"{where}: {row[first]} has two rows, or no column; an icon has one of each")
         numbers = [as_number(cell, table.mark) for cell in cells]
         if wrong := [cell for cell, size in zip(cells, numbers, strict=True) if size % 1 or not 0 <= size < MOST]:
             raise TrialsError(f"{where}: {quoted(wrong[0])} is not a count; {PER_CENT}")
+        if turned and none:
+            raise TrialsError(f"{top}: rows are answers, by {quoted(first)}; give silence as a row of its own set")
         np.add.at(counts[shown], said, numbers)  # silence may have several columns
+    if turned:
+        counts[:, :-2] = counts[:, :-2].T
     sums = counts.sum(axis=1)
     if not counts[:, :-2].any():
         raise TrialsError(f"{path}: every count is 0; write how often each answer was given")
@@ -247,20 +277,35 @@ def table_in(
     return table, hashlib.sha256(data).hexdigest()[:16]
 
 
-def require(path: Path, table: Table, needed: Sequence[str], example: str) -> None:
+def require(path: Path, table: Table, needed: Sequence[str], example: str, meant: _Cells | None = None) -> None:
     """Raise a TrialsError where columns are missing, which lists those that were found, or where there is no row."""
     if missing := [name for name in needed if name not in table.header]:
         if "presented" in needed and {"kind", "value"} <= set(table.header):
             raise TrialsError(f"{path}:{table.line}: these are measurements, not answers; give them as measurements")
         free = [cell for cell in table.header if cell and cell not in (*needed, *table.names.renamed)]
-        others = {name: [cell for cell in free if re.search(OTHERS.get(name, "$."), cell)] for name in missing}
-        known = {name: cells[0] for name, cells in others.items() if cells}
+        known = _proposed(table, missing, free, meant) if meant else {}
         raise TrialsError(
             f"{path}:{table.line}: {'column' if len(missing) == 1 else 'columns'} missing: {', '.join(missing)}; "
             f"found: {table.found}; write a line such as: {example}; or say what they are called"
         ).to(columns=known or {missing[0]: "THEIRS"})
     if not table.rows:
         raise TrialsError(f"{path}: no row below the names of the columns; write one row per trial")
+
+
+def _proposed(table: Table, missing: Sequence[str], free: list[str], meant: _Cells) -> dict[str, str]:
+    """Which free columns the missing ones may be: by their cells, icons or numbers, and then by their names."""
+    texts = {cell: [*table.texts(cell)] for cell in free if table.header.count(cell) == 1}
+    icons = [cell for cell, own in texts.items() if 2 * sum(meant.icon(each) in meant.known for each in own) > len(own)]
+    numbers = [cell for cell, own in texts.items() if all(map(str.isdecimal, own))]
+    known = dict[str, str]()
+    for name in missing:
+        left = [cell for cell in texts if cell not in known.values()]
+        people = sorted({*left} - {*icons}, key=lambda cell: (len({*texts[cell]}), left.index(cell)))
+        fit = {"trial": numbers, "participant": people}.get(name, icons)
+        named = [cell for cell in (*fit, *left) if cell in left and re.search(OTHERS[name], cell)]
+        likely = named or [cell for cell in fit if cell in left and fit is icons]
+        known.update({name: likely[0]} if likely else {})
+    return known
 
 
 def label(cell: str, column: str, where: str) -> str:
@@ -293,7 +338,10 @@ def _icon(cell: str, column: str, known: Mapping[str, int], where: str) -> str:
     name = label(cell, column, where)
     if name in known:
         return name
-    where_to = {"responded": "; where nobody answered, leave the cell empty", "a column": "; leave out totals"}
+    where_to = {
+        "responded": f"; where nothing was felt, leave the cell empty, or put {SILENT} for ICON",
+        "a column": "; leave out totals",
+    }
     hint = f"{did_you_mean(name, known)}{where_to.get(column, '')}; or say which it stands for"
     raise TrialsError(f"{where}: {column} is {quoted(name)}, which is not an icon of the set; {hint}").to(
         columns={next(iter(nearest_words(name, known)), "ICON"): name}

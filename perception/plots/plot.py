@@ -22,6 +22,7 @@ from ..selection.frontier import Frontier
 from ..sensation.percept import Percept
 from .draw_heat import plot_confusion
 from .draw_map import plot_map
+from .film import Film as Film
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -16,6 +16,7 @@ import numpy as np
 
 from thermicon.base.files.records import Record, RecordTable, load_records
 from thermicon.base.numbers.arrays import Array
+from thermicon.base.words.near_words import proposals
 from thermicon.base.words.number_text import significant
 
 from ..observer.mechanisms.summation import CM2
@@ -30,6 +31,8 @@ REST_SLACK_K = 0.25
 DURATION_SLACK_S = 0.05
 """Shorter differences are those of a ramp's length."""
 MIRRORS = ("left", "right")
+ALIKE = 0.8
+"""How alike a name must be spelt to a site's for it to be meant: hand is not meant by head."""
 NEAREST = {
     "thenar": (("fingertip", "finger", "fingers", "palm", "hypothenar", "thumb"), "hairless skin of the same hand"),
     "hand-dorsum": (("hand", "knuckle"), "the same hand"),
@@ -145,7 +148,10 @@ def outside_site(site: str) -> tuple[str, ...]:
     words = [word for word in site.lower().split() if word not in MIRRORS]
     if "-".join(words) in known:
         return ()
-    return (f"no detection threshold is on record for the {site}: those of the {CALIBRATED} are used",)
+    named = {site for site in known if site} | {word for others, _ in NEAREST.values() for word in others}
+    near = [] if "-".join(words) in named else proposals("-".join(words), named, cutoff=ALIKE)
+    meant = f" (did you mean {near[0]}?)" if near else ""
+    return (f"no detection threshold is on record for the {site}{meant}: those of the {CALIBRATED} are used",)
 
 
 def nearest_site(site: str) -> tuple[str | None, str]:

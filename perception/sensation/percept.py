@@ -27,6 +27,8 @@ from .received import received, uniform_clock
 if TYPE_CHECKING:
     from thermicon.circuit import Trace
 
+    from ..plots.film import Film
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Percept(Drawn):
@@ -124,6 +126,20 @@ class Percept(Drawn):
         if not self.felt:
             return f"not felt, p {self.detected_probability:.3f}"
         return f"felt at {self.onset_s:.2f} s by {self.channel}, p {self.detected_probability:.3f}"
+
+    def film(self, trace: Trace) -> Film:
+        """Return the film of the run that this is the percept of, which a notebook shows; `save` writes it.
+
+        >>> from thermicon.circuit import simulate
+        >>> from thermicon.icons import load_library
+        >>> trace = simulate(load_library("six-icons")["cold-to-warm"], "thenar")
+        >>> perceive(trace).film(trace).title
+        'cold-to-warm on the rig thenar: predicted'
+        """
+        if trace.time_s.size != self.psi_cold.size:
+            raise ValueError(f"the percept has {self.psi_cold.size} rows, the trace {trace.time_s.size}: not its run")
+        film: Film = self._room().Film(trace, self)
+        return film
 
     def __repr__(self) -> str:
         beyond = ", outside the data" if self.outside_data else ""

@@ -138,11 +138,11 @@ def test_the_strip_says_set_goal_and_icon_and_is_pale_while_the_text_is_newer(dr
     numbers = {"type": "strip", "set": "93 %", "icon": "92 %", "felt": "100 %", "goal": "correct >= 90 %", "about": ""}
     strip, goal = drawn.page.locator(".tm-strip"), drawn.page.get_by_label("goal")
     drawn.frame({**numbers, "stale": False, "rough": False, "met": True, "binding": ""})
-    assert strip.locator("b").all_inner_texts() == ["93 %", "✓ met", "92 %", "100 %"]
+    assert strip.locator("b").all_inner_texts() == ["93 %", "92 %", "100 %", "✓ met"]
     assert goal.input_value() == "correct >= 90 %"
     drawn.frame({**numbers, "stale": True, "rough": True, "met": False, "binding": "a and b"})
     assert strip.get_attribute("aria-label") == "Predictions, older than the text"
-    assert strip.locator("b").all_inner_texts() == ["≈ 93 %", "? not judged", "≈ 92 %", "≈ 100 %"]
+    assert strip.locator("b").all_inner_texts() == ["≈ 93 %", "≈ 92 %", "≈ 100 %", "? not judged"]
     goal.fill("bits >= 2")
     goal.press("Enter")
     assert drawn.sent("goal")[-1]["text"] == "bits >= 2"

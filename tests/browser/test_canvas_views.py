@@ -55,6 +55,15 @@ def test_a_cell_is_picked_by_click_and_by_keys(page: Any, made: Bench) -> None:
     assert (made.sent("cell")[-1]["row"], made.sent("cell")[-1]["column"]) == (1, 0)
 
 
+def test_what_all_names_begin_with_is_said_once(page: Any, made: Bench) -> None:
+    made.show("heat")
+    one = {"key": "confusion", "label": "confusion", "buffer": 0, "unit": "", "low": 0, "high": 1, "text": "0%"}
+    made.frame({"type": "frame", "view": "heat", "labels": ["dip_rate=1", "dip_rate=12"], "matrices": [one]}, [0] * 4)
+    assert page.locator(".tm-corner").inner_text() == "dip_rate=…"
+    assert page.locator(".tm-column").all_inner_texts() == ["1", "12"]
+    assert page.locator(".tm-row").first.get_attribute("aria-label") == "dip_rate=1"
+
+
 def test_the_number_under_the_focus_follows_the_ranking(page: Any, made: Bench) -> None:
     made.show("heat")
     one = {"key": "confusion", "label": "confusion", "buffer": 0, "unit": "", "low": 0, "high": 1, "text": "0%"}

@@ -95,6 +95,8 @@ def test_a_knob_and_a_rig_that_a_busy_kernel_does_not_know_are_not_judged(bench:
     page.locator(".tm-goal").press("Enter")
     expect_text(page, SAFE)
     expect(page.locator(".tm-pill")).to_have_text("✓ limits kept")
+    page.get_by_role("button", name="Sliders").click()
+    expect(page.locator(".noUi-handle").first).to_be_visible()
     page.evaluate(DONE_TO_THE_KERNEL["busy"])
     page.wait_for_timeout(500)
     slider = page.locator(".thermicon-knob").filter(has_text="contact area").locator(".noUi-handle")

@@ -74,6 +74,50 @@ def test_text_and_curve_stay_in_step(bench: Page) -> None:
     assert pill <= badge, "the strip leaves no room for the verdict"
 
 
+IN_SIGHT = """names => { const room = document.querySelector(".jp-Notebook").getBoundingClientRect();
+  return names.filter((name) => { const box = document.querySelector(name).getBoundingClientRect();
+    return box.height < 10 || box.top < room.top || box.bottom > room.bottom; }); }"""
+CUT_OFF = """() => [...document.querySelectorAll(".thermicon :is(button, select, input, td, th, .tm-strip, .tm-bar)")]
+  .filter((each) => each.checkVisibility() && !each.closest(".tm-badge") && each.scrollWidth > each.clientWidth + 1
+    || each.getBoundingClientRect().right > document.querySelector(".thermicon").getBoundingClientRect().right + 1)
+  .map((each) => each.className + each.textContent.slice(0, 40))"""
+
+
+def test_a_laptop_shows_curves_and_errors_without_scrolling_and_four_sliders_in_two_stops(
+    page: Page, lab: Server
+) -> None:
+    open_notebook(page, lab, "workbench.ipynb")
+    run_all(page)
+    page.locator(".tm-panel").first.wait_for(timeout=SETTLES_MS)
+    parts = [".tm-axis", ".tm-status", ".tm-player", '[data-panel="sensation"] .tm-plot', ".tm-badge", ".tm-strip"]
+    expect(page.locator(".tm-strip b").first).to_have_text(re.compile(r"^\d+ %"), timeout=SETTLES_MS)
+    assert page.evaluate(IN_SIGHT, parts) == []
+    sliders = page.get_by_role("button", name="Sliders")
+    sliders.click()
+    handle = page.locator(".noUi-handle").first
+    expect(handle).to_be_visible()
+    handle.focus()
+    page.keyboard.press("]")
+    expect(page.locator(".noUi-handle").nth(1)).to_be_focused()
+    page.keyboard.press("ArrowRight")
+    expect(sliders).to_have_text("Sliders (1 set)")
+    stops = "() => document.activeElement.closest('.thermicon-knobs') !== null"
+    count = [page.keyboard.press("Tab") or page.evaluate(stops) for _ in range(3)]
+    assert count == [True, False, False], "slider and Reset"
+    page.locator(".tm-picker").select_option("cold-to-warm")
+    page.get_by_role("button", name="Pin", exact=True).click()
+    page.locator(".thermicon-bar select").select_option("fingertip")
+    expect(page.locator(".tm-sides tbody tr")).to_have_count(2)
+    for width in (1280, 900, 1920):
+        page.set_viewport_size({"width": width, "height": 800})
+        page.wait_for_timeout(500)
+        assert page.evaluate(CUT_OFF) == [], width
+    page.locator(".tm-stage").press("b")
+    expect(page.locator(".thermicon-bar select")).to_have_value("thenar")
+    expect(page.locator(".tm-sides tbody tr").first).to_contain_text("cold-to-warm, fingertip")
+    expect(page.locator(".thermicon-knob .changed")).to_have_text("contact area (cm²) · rig 9 cm²")
+
+
 def test_it_designs_below_the_first_screen_compares_and_exports(bench: Page, lab: Server) -> None:
     bench.set_viewport_size({"width": 900, "height": 800})
     wrong: list[str] = []
@@ -175,7 +219,9 @@ def test_it_goes_on_after_a_reload_and_a_restart(bench: Page, lab: Server) -> No
     assert (lab.folder / "workbench.ipynb").stat().st_size < MOST_SAVED
     wait_until_drawn(bench)
     expect_text(bench, TWO)
+    bench.get_by_role("button", name="Sliders").click()
     slider = bench.locator(".thermicon-knob").filter(has_text="contact area").locator(".noUi-handle")
+    expect(slider).to_be_visible()
     slider.focus()
     bench.keyboard.press("ArrowRight")
     expect(bench.locator(".thermicon-knob .changed")).to_have_text("contact area (cm²) · rig 9 cm²")

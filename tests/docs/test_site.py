@@ -7,16 +7,13 @@ import sys
 from pathlib import Path, PurePosixPath
 from types import ModuleType
 
-import numpy as np
 import pytest
 from click import Context
 from typer.main import get_command
 
 from tests.legible import troubles
-from thermicon.circuit import Rig, simulate
-from thermicon.icons import load_library
+from thermicon.circuit import Rig
 from thermicon.notebooks.cli.main import app
-from thermicon.perception import perceive
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILDER = ROOT / "docs" / "builder"
@@ -32,7 +29,7 @@ def builder(monkeypatch: pytest.MonkeyPatch) -> dict[str, ModuleType]:
     """The modules of docs/builder, which is a program and not a package."""
     monkeypatch.syspath_prepend(str(BUILDER))
     names = ("staging", "sections", "command_options", "python_names", "gallery", "page_pictures")
-    return {name: __import__(name) for name in (*names, "rig_stack", "moving_percept", *TABLES)}
+    return {name: __import__(name) for name in (*names, "rig_stack", *TABLES)}
 
 
 def slots(builder: dict[str, ModuleType]) -> set[str]:
@@ -103,7 +100,7 @@ def test_a_picture_is_drawn_from_the_files_of_its_page(builder: dict[str, Module
     site = builder["staging"].Staging(tmp_path / "site", {}, tmp_path / "kept")
     text = site.filled(f"{page}<!-- picture: simulate a.cue | An icon -->\n", PurePosixPath("docs/x.md"))
     [picture] = (tmp_path / "site" / "pictures").iterdir()
-    assert f"![An icon](/pictures/{picture.name})" in text
+    assert f"```{{figure}} /pictures/{picture.name}\n:alt: An icon\n:figclass: beside\n" in text
     assert picture.read_bytes().startswith(b"\x89PNG")
     with pytest.raises(RuntimeError, match=r"thermicon simulate b\.cue --figure"):
         site.filled(f"{page}<!-- picture: simulate b.cue | Another -->\n", PurePosixPath("docs/x.md"))
@@ -216,20 +213,3 @@ def test_the_stack_of_a_rig_names_keys_that_set_it(builder: dict[str, ModuleType
     assert rig.with_(**{key: 0.9 * float(value.rstrip(", …")) for key, value in said}).changes
     assert len(said) >= 20
     assert troubles(axes.figure) == []
-
-
-def test_a_moving_percept_shows_what_is_felt_at_each_moment(builder: dict[str, ModuleType]) -> None:
-    moving = builder["moving_percept"]
-    trace = simulate(load_library("six-icons")["cold-to-warm"], "thenar", tail_s=2.0)
-    percept = perceive(trace)
-    svg = moving.moving_svg(trace, percept)
-    assert svg == moving.moving_svg(trace, percept)
-    assert "predicted" in svg
-    assert len(svg) < 300_000
-    for name, psi in (("cold", percept.psi_cold), ("warm", percept.psi_warm)):
-        frames = re.search(f"@keyframes {name} .*", svg)
-        assert frames is not None
-        shares = np.array(re.findall(r"scaleY\(([\d.]+)\)", frames[0]), dtype=float)
-        seconds = np.linspace(0.0, 10.0, shares.size)
-        felt = np.interp(seconds, percept.time_s, psi) / percept.psi_cold.max()
-        np.testing.assert_allclose(shares, felt, atol=0.001)

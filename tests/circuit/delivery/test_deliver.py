@@ -8,10 +8,9 @@ import pytest
 
 from tests.circuit.delivery.one_drive import changed, icon_of, worst_case
 from thermicon.circuit import Device, Rig, simulate
-from thermicon.circuit.delivery.deliver import traces_until
+from thermicon.circuit.delivery.deliver import flow_of, traces_until
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive, DeliveryDeviation, Deviation
 from thermicon.circuit.delivery.devicefile import DeviceError
-from thermicon.circuit.delivery.flows import flow_of
 from thermicon.circuit.delivery.formats.form import events_of
 from thermicon.circuit.delivery.prepare import lost_text
 from thermicon.circuit.delivery.samples import rate_of, within

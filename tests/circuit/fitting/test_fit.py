@@ -114,8 +114,21 @@ def test_gaps_and_wild_rows_do_little_harm(log: Log, thenar: Rig) -> None:
 def test_a_sensor_that_is_off_is_fitted_and_named(log: Log, thenar: Rig) -> None:
     found = fit(altered(log, display_C=log.column("display_C") + 0.6), thenar, free=KEYS)
     assert found.channels[0].offset_K == pytest.approx(0.6, abs=0.3)
+    assert not any(item.identified for item in found.parameters)
     assert found.notes[0].startswith("rig.csv: display_C reads +0.")
-    assert found.notes[0].endswith("sensors are assumed to be; calibrate it")
+    assert found.notes[0].endswith("calibrate it, or say by how much it may be off (--offset K)")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("off_K", [-1.5, 1.5])
+def test_a_sensor_that_is_said_to_be_off_leaves_the_truth_in_the_intervals(
+    log: Log, true_rig: Rig, thenar: Rig, off_K: float
+) -> None:
+    keys = [*TRUTH, "heat_sink.temperature_C", "ambient.temperature_C"]
+    found = fit(altered(log, display_C=log.column("display_C") + off_K), thenar, free=keys, offset_K=2.0)
+    assert found.channels[0].offset_K == pytest.approx(off_K, abs=0.7)
+    truth = {**TRUTH, "heat_sink.temperature_C": true_rig.heat_sink.temperature_C}
+    holds(found, truth | {"ambient.temperature_C": true_rig.ambient.temperature_C})
 
 
 @pytest.mark.slow

@@ -114,7 +114,7 @@ def test_a_sensor_that_is_far_off_narrows_nothing(log: Log, thenar: Rig) -> None
     assert after.contact_resistance_relative >= before.contact_resistance_relative
     assert after.seebeck_relative >= before.seebeck_relative
     assert any("is not narrowed by this fit" in note for note in found.notes)
-    assert found.notes[0].endswith("calibrate it")
+    assert found.notes[0].endswith("calibrate it, or say by how much it may be off (--offset K)")
 
 
 @pytest.mark.parametrize(("column", "delay_s"), [("display_C", 0.3), ("voltage_V", 0.15), ("display_C", -0.1)])

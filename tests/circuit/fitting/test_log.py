@@ -168,6 +168,15 @@ def test_the_index_of_a_table_of_pandas_may_hold_its_times(unit: str) -> None:
     assert read_log(filtered).time_s[1] - read_log(filtered).time_s[0] == pytest.approx(0.2)
 
 
+@pytest.mark.parametrize(
+    ("form", "message"), [("{}", "look like milliseconds"), ("0:{:02d}:00", "60 s apart|log faster")]
+)
+def test_numbers_may_be_milliseconds_and_a_clock_is_what_it_says(tmp_path: Path, form: str, message: str) -> None:
+    rows = "".join(f"{form.format(k if ':' in form else 60 * k)},0.1,{32 + k / 100:g}\n" for k in range(40))
+    with pytest.raises(LogError, match=message):
+        read_log(saved(tmp_path, f"time_s,current_A,display_C\n{rows}"))
+
+
 def test_gaps_are_empty_cells_or_nan_or_missing_cells(tmp_path: Path) -> None:
     text = GOOD.replace(",32.05", ",").replace("32.06", "NaN").replace(",32.07", "")
     assert np.isnan(read_log(saved(tmp_path, text)).column("display_C")).sum() == 3

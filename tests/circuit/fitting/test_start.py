@@ -9,6 +9,7 @@ import pytest
 from thermicon.circuit import Rig, fit, simulate
 from thermicon.circuit.fitting.forward import steady_level
 from thermicon.circuit.fitting.keys import CONTACT
+from thermicon.circuit.fitting.log import LogError, read_log, read_logs
 from thermicon.circuit.fitting.rig_fit import RigFit
 from thermicon.circuit.solver.drive import Drive
 from thermicon.circuit.solver.network import network_of
@@ -104,6 +105,21 @@ def test_a_log_that_begins_while_the_display_drifts_says_that_nothing_is_known(
     assert not cut[CONTACT].identified and cut[CONTACT].cure.startswith("first log a few seconds of rest")
     assert any("not steady at the first row" in note for note in cut.notes)
     assert cut.rig.contact == rig.contact
+
+
+def test_a_clock_that_starts_again_begins_another_run_and_rows_sent_again_do_not(
+    drifting: tuple[Rig, Rig, pd.DataFrame],
+) -> None:
+    rig, true, log = drifting
+    late = log[log.time_s >= 15.0]
+    both = pd.concat([log, late.assign(time_s=late.time_s - 15.0, display_C=late.display_C + 1e-4)])
+    assert [each.name for each in read_logs(both)] == ["table, recording 1", "table, recording 2"]
+    assert len(read_logs(pd.concat([log, log[:500]]))) == len(read_logs(log)) == 1
+    found = fit(both, rig, free=[CONTACT])[CONTACT]
+    assert not found.identified or found.low <= true.contact.resistance_m2K_per_W <= found.high
+    assert fit(pd.concat([log, log.assign(display_C=log.display_C + 1e-4)]), rig, free=[CONTACT])[CONTACT].identified
+    with pytest.raises(LogError, match="the clock starts again 1 times: give each recording its own file"):
+        read_log(both)
 
 
 def test_residuals_far_beyond_noise_leave_nothing_known(drifting: tuple[Rig, Rig, pd.DataFrame]) -> None:

@@ -237,6 +237,20 @@ def test_a_number_in_another_unit_is_taken_and_told_with_that_unit(key: str, sli
     assert len(told) == 1 and told[0].startswith(key) and told[0].endswith(f"; {likely}")
 
 
+@pytest.mark.parametrize(
+    ("key", "slip", "ends"),
+    [
+        ("skin.rest_C", 89.6, "at most 45 °C; 89.6 looks like °F, 32 °C"),
+        ("driver.current_limit_A", 1500.0, "at most 1000 A; 1500 looks like mA, 1.5 A"),
+        ("skin.rest_C", 45.5, "at most 45 °C"),
+    ],
+)
+def test_a_number_that_cannot_be_is_refused_with_the_unit_that_it_may_have(key: str, slip: float, ends: str) -> None:
+    with pytest.raises(RigError) as refused:
+        THENAR.with_(**{key: slip})
+    assert str(refused.value).endswith(ends)
+
+
 def test_no_number_of_a_shipped_rig_or_module_is_unusual() -> None:
     rigs = [Rig.load(name) for name in rig_names()]
     rigs += [THENAR.with_(**{"module.name": name}) for name in module_names()]

@@ -102,6 +102,17 @@ def test_bounds_enclose_thirty_plays_in_any_order(pause_s: float, near_K: float)
         assert (simulated(plant, play, pause_s, State(cold)).nodes_C >= cold - 1e-5).all()
 
 
+def test_pauses_asked_in_turns_do_not_get_each_others_bounds() -> None:
+    plant = CurrentPlant.of(few())
+    repeating = Repeating(plant, [[play] for play in PLAYS], Limits.shipped())
+    for pause_s in (3.0, 20.0, 3.0, 0.0, 3.1, 20.0):
+        steady, warm, cold = repeating.bounds(pause_s)
+        for play, cycle in zip(PLAYS, steady, strict=True):
+            assert np.abs(simulated(plant, play, pause_s, cycle).nodes_C - cycle.nodes_C).max() < 1e-5
+            assert (simulated(plant, play, pause_s, warm).nodes_C <= warm.nodes_C + 1e-5).all()
+            assert (simulated(plant, play, pause_s, cold).nodes_C >= cold.nodes_C - 1e-5).all()
+
+
 def test_bounds_of_a_set_hold_where_one_drive_warms_the_sink_and_another_the_display() -> None:
     """A passive sink that coolings have warmed makes the next warming warmer than any number of warmings."""
     sink = {"temperature_C": 28.0, "capacity_J_per_K": 40.0, "air_resistance_K_per_W": 0.5}
@@ -118,6 +129,11 @@ def test_bounds_of_a_set_hold_where_one_drive_warms_the_sink_and_another_the_dis
             assert (state.nodes_C >= least - 1e-6).all()
             beyond = max(beyond, float((state.nodes_C - np.max([one.nodes_C for one in steady], axis=0)).max()))
     assert beyond > 0.1, "the bounds are no mere steady cycles"
+    read = [
+        [network.read(nodes, name) for name in WATCHED]
+        for network, nodes in zip(plant.ensemble.networks, most, strict=True)
+    ]
+    assert plant.now(cool, State(most)) == pytest.approx(np.transpose(read)), "the sink is not taken for a lump"
 
 
 def test_recovery_is_when_display_and_skin_are_back() -> None:

@@ -12,6 +12,7 @@ from scipy.linalg import expm
 
 from thermicon.circuit import Drive, Rig, simulate, simulate_current, simulate_many
 from thermicon.circuit.rig.corner import perturbed
+from thermicon.circuit.solver.batch_inputs import Bank, Intervals, State, run_on
 from thermicon.circuit.solver.network import RECORDED, network_of
 from thermicon.circuit.solver.steady import state_under_current
 from thermicon.icons import load_library
@@ -25,6 +26,8 @@ FINE = 200
 PASSIVE: dict[str, object] = {"capacity_J_per_K": 90.0, "air_resistance_K_per_W": 1.5}
 WARM = THENAR.with_(heat_sink={**PASSIVE, "temperature_C": 28.0})
 STEADY = THENAR.with_(heat_sink={**PASSIVE, "temperature_C": None})
+THIN = {"skin.layer.muscle.thickness_mm": 4.0}
+"""A column of fewer lumps."""
 
 
 @dataclass(frozen=True)
@@ -137,6 +140,32 @@ def test_a_constant_current_stays_at_its_steady_state(rig: Rig, current: float) 
         assert np.abs(getattr(trace, probe) - read(rig, steady[np.newaxis], probe)).max() < 1e-6, probe
 
 
+@pytest.mark.parametrize("rigs", [RIGS, [WARM, WARM.with_(**THIN)]], ids=["ideal sinks", "passive sinks"])
+def test_a_step_is_the_trapezoidal_rule_of_the_whole_circuit(rigs: list[Rig]) -> None:
+    # Intervals as short as these are one step each: in whatever coordinates, the rule is the same to its last digits.
+    edges_s = np.append(0.0, np.cumsum(np.tile([0.25e-3, 0.2e-3, 0.1e-3, 0.1e-3], 100)))
+    ends_A = np.random.default_rng(1).uniform(-2.0, 2.0, (2, len(edges_s) - 1, 2))
+    networks, lanes = [network_of(rig) for rig in rigs], np.arange(2)
+    bank = Bank.of(networks)
+    begun = [np.append(30.0 + np.arange(network.nodes - 1) % 5, network.deep_C) for network in networks]
+    intervals = Intervals(edges_s, np.arange(len(edges_s)), *ends_A)
+    values, end = run_on(bank, lanes, lanes, intervals, State(bank.states(begun)))
+    for lane, (rig, network, start) in enumerate(zip(rigs, networks, begun, strict=True)):
+        dense = Dense.of(rig, 0, 0.0)
+        states = [start[:-1] if network.passive else np.append(start[:-1], rig.heat_sink.temperature_C)]
+        for half, begins, ends in zip(np.diff(edges_s) / 2, *ends_A[:, :, lane], strict=True):
+            mean_A, store = (begins + ends) / 2, np.diag(dense.capacity / half)
+            matrix, source = dense.under(mean_A)
+            source += dense.per_A2 * (begins - ends) ** 2 / 12  # mean square less squared mean of a line
+            states.append(2 * np.linalg.solve(store - matrix, store @ states[-1] + source) - states[-1])
+        for row, probe in enumerate(RECORDED):
+            close = 1e-9 if probe.endswith("_C") else 1e-5  # K, W/m²
+            assert np.abs(values[row, lane] - read(rig, np.array(states), probe)).max() < close, probe
+        inner = network.nodes - 1
+        assert np.abs(end.nodes_C[lane, :inner] - states[-1][:inner]).max() < 1e-9
+        assert end.nodes_C[lane, inner] == network.deep_C
+
+
 @pytest.fixture(scope="module")
 def field() -> np.ndarray:
     """Display in °C every 0.1 s of FAST, with the legs in 200 cells and exact steps in time."""
@@ -159,8 +188,7 @@ def test_the_field_is_fine_enough(field: np.ndarray) -> None:
 
 @pytest.mark.slow
 def test_columns_of_different_length_share_a_batch() -> None:
-    icons, thin = tuple(load_library("six-icons"))[:4], {"skin.layer.muscle.thickness_mm": 4.0}
-    rigs = [WARM, WARM.with_(**thin)]
+    icons, rigs = tuple(load_library("six-icons"))[:4], [WARM, WARM.with_(**THIN)]
     assert network_of(rigs[0]).nodes != network_of(rigs[1]).nodes
     together = simulate_many(icons, rigs, nominal=rigs[0], end_s=8.0, tracking="ideal")
     for place, rig in enumerate(rigs):

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.ensemble import Ensemble
-from thermicon.circuit.solver.batch_inputs import Intervals, State, left_over, run_on
+from thermicon.circuit.solver.batch_inputs import Intervals, State, run_on
 from thermicon.circuit.solver.modes import FELT, READ, ConstantCurrent, modes_of
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current
@@ -72,19 +72,6 @@ def test_a_pause_is_the_same_as_a_map() -> None:
     free = np.einsum("rij,rj->ri", matrix, state.nodes_C[:, :-1]) + constant
     assert np.abs(free - few.rest(0.08, State(state.nodes_C), 12.5).nodes_C[:, :-1]).max() < 1e-9
     assert matrix.min() > -1e-9, "no node gets colder because another is warmer"
-
-
-def test_a_lane_beyond_the_last_block_is_the_same_alone() -> None:
-    every = Ensemble.of(THENAR)
-    lanes = np.arange(33, dtype=np.int64)
-    times = np.arange(201) * 0.01
-    amps = np.repeat(0.5 * every.gain[np.newaxis, :33], len(times) - 1, axis=0)
-    intervals = Intervals(times, np.arange(len(times)), amps, amps)
-    start = every.at_rest(0.1).take(lanes)
-    alone, _ = run_on(every.bank, lanes, lanes, intervals, start, READ, alone=left_over(33))
-    padded, _ = run_on(every.bank, lanes, lanes, intervals, start, READ)
-    assert (padded[:, :32] == alone[:, :32]).all()
-    assert np.abs(padded[:, 32] - alone[:, 32]).max() < 1e-9
 
 
 MODES = modes_of(THENAR)

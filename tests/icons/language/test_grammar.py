@@ -1,11 +1,16 @@
 """The private state of lark that recovery depends on."""
 
+import pickle
 import re
+import sys
 from importlib import resources
+from pathlib import Path
 
-from lark import Token
+import pytest
+from lark import Lark, Token
 
-from thermicon.icons.language.source import grammar
+from thermicon.base.files.cache_folder import sealed_content
+from thermicon.icons.language.grammar import grammar
 from thermicon.icons.model.units import UNITS
 from thermicon.icons.model.words import CLAUSES, VOCABULARY
 
@@ -49,3 +54,38 @@ def test_words_and_units_that_editors_colour_are_those_of_the_grammar() -> None:
     assert set(re.findall(r'"([a-z]+)"', re.sub(quantity, "", code))) == {*CLAUSES}.union(*VOCABULARY.values())
     units = re.findall(r'"([^"]+)"', " ".join(re.findall(quantity, code)))
     assert set(units) == {unit for kind in UNITS.values() for unit in kind if unit}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="owners and modes are those of POSIX")
+def test_kept_tables_read_the_same_and_no_others_are_unpickled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("THERMICON_CACHE", str(tmp_path))
+    made = grammar.__wrapped__()
+    (kept,) = (tmp_path / "grammar").iterdir()
+    whole, read = kept.read_bytes(), list[bytes]()
+    monkeypatch.setattr(Lark, "load", lambda file: read.append(file.read()) or made)
+
+    def is_read() -> bool:
+        read.clear()
+        grammar.__wrapped__()
+        return bool(read)
+
+    assert is_read()
+    for broken in (b"", whole[:-1], whole[:32] + pickle.dumps(print)):
+        kept.write_bytes(broken)
+        assert sealed_content(kept) is None
+        assert not is_read()
+        assert sealed_content(kept) is not None, "they are made again"
+    kept.chmod(0o666)
+    assert not is_read()
+    (elsewhere := tmp_path / "elsewhere").write_bytes(whole)
+    kept.unlink()
+    kept.symlink_to(elsewhere)
+    assert not is_read()
+    (tmp_path / "grammar").chmod(0o777)
+    assert not is_read()
+
+
+def test_cue_text_is_read_from_kept_tables_as_from_new(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("THERMICON_CACHE", str(tmp_path))
+    first, second = (grammar.__wrapped__().parse(CUE) for _ in range(2))
+    assert first == second

@@ -43,6 +43,13 @@ def test_without_jupyterlab_the_cure_is_told_and_nothing_written(
     assert not (tmp_path / "mine").exists()
 
 
+def test_jupyterlab_does_not_ask_about_its_news(tmp_path: Path) -> None:
+    ask = "from jupyterlab_server.settings_utils import _get_overrides; print(_get_overrides(''))"
+    own = lab.environment(tmp_path)
+    said = subprocess.run([sys.executable, "-c", ask], env=own, capture_output=True, text=True, check=True).stdout
+    assert "'fetchNews': 'false'" in said
+
+
 def test_a_server_that_fails_is_told(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     failing = [sys.executable, "-c", "raise SystemExit(4)"]
     monkeypatch.setattr(lab, "command_of", lambda *_: failing)

@@ -5,9 +5,11 @@ from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
+import typer
 
 from tests.builders import few_draws
 from thermicon.base.words.number_text import percent_span
@@ -166,6 +168,22 @@ def test_a_first_ranking_says_once_on_a_terminal_that_it_compiles(
     ranking._say_if_first()
     ranking._say_if_first()
     assert capsys.readouterr().err.count("compiling for this computer, once") == 1
+
+
+def test_who_watches_many_icons_sees_the_table_before_the_intervals_and_the_next_command_last(
+    cli: Cli, two: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    how = "rank", two, "--people", 4, "--intervals", 4
+    usual = cli.good(*how).stdout.splitlines()
+    monkeypatch.setattr(ranking, "shown_at_once", lambda: True)
+    assert cli.good(*how).stdout.splitlines() == usual, "these are few"
+    monkeypatch.setattr(ranking, "MANY", 2)
+    lines = cli.good(*how).stdout.splitlines()
+    assert sorted(filter(None, lines)) == sorted(filter(None, usual))
+    assert lines[-1].startswith("Next: ")
+    stopped = Mock(side_effect=typer.Exit(1))
+    monkeypatch.setattr("thermicon.perception.ranking.rank.with_intervals", stopped)
+    assert "most confused with" in cli(*how).stdout
 
 
 def test_records_have_no_interval_and_say_so(cli: Cli, two: Path, records: Path) -> None:

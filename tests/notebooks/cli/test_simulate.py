@@ -49,6 +49,19 @@ def test_one_icon_a_rate_and_a_tail(cli: Cli, two: Path, tmp_path: Path) -> None
     assert frame["target_C"].iloc[-1] == pytest.approx(32.0)
 
 
+def test_films_of_a_set_are_one_for_each_icon_and_say_what_is_felt(cli: Cli, two: Path, tmp_path: Path) -> None:
+    figure = ("--figure", tmp_path / "a.svg", "--icon", "cool-step")
+    cli.good("simulate", two, *figure)
+    before = (tmp_path / "a.svg").read_bytes()
+    said = cli.good("simulate", two, *figure, "--film", tmp_path / "one.svg").stderr
+    assert (tmp_path / "a.svg").read_bytes() == before
+    assert f"wrote {tmp_path / 'one.svg'}: felt at " in said
+    said = cli.good("simulate", two, "--film", tmp_path / "all.svg").stderr
+    assert said.count("wrote ") == 2
+    assert (tmp_path / "all-cool-step.svg").read_bytes() == (tmp_path / "one.svg").read_bytes()
+    assert (tmp_path / "all-warm-step.svg").is_file()
+
+
 def test_a_miss_is_data_and_not_a_failure(cli: Cli, two: Path, tmp_path: Path) -> None:
     said = cli.good("simulate", two, *WEAK)
     assert "NOT reached: misses its target by" in said.stdout

@@ -4,8 +4,10 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 
 from tests.notebooks.conftest import Cli
 from thermicon.circuit import Rig, simulate
@@ -88,6 +90,26 @@ def test_the_table_and_its_summary(cli: Cli, two: Path, tmp_path: Path) -> None:
     assert [row[:2] for row in rows][:2] == [["cool-step", "1"], ["cool-step", "9"]]
     assert rows[-1][:3] == ["all", "icons", "9"]
     assert int(rows[-1][3]) > int(rows[-2][3])
+
+
+def test_curves_lie_over_one_another_and_the_table_is_printed(
+    cli: Cli, two: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **more: drawn.append(figure))
+    said = cli.good("sweep", two, "--vary", f"{CONTACT}=1e-4,1e-3,-1", "--figure", tmp_path / "a.png").stdout
+    rows = [line.split() for line in said.splitlines()[2:8]]
+    assert [row[0] for row in rows] == ["cool-step"] * 3 + ["warm-step"] * 3
+    assert [row[-1] for row in rows[:3]] == ["green", "green", "possible"]
+    cool, warm, *_, bar = drawn[0].axes
+    assert (cool.get_title(loc="right"), warm.get_title(loc="right")) == ("cool-step", "warm-step")
+    assert cool.get_ylabel() == "skin (°C)"
+    assert len(cool.lines) == len(warm.lines) == 2
+    trace = simulate(read_cue(two)["cool-step"], Rig.load("thenar").with_(**{CONTACT: 1e-3}))
+    np.testing.assert_allclose(np.asarray(cool.lines[1].get_ydata()), trace.skin_C)
+    assert bar.get_ylabel() == "contact resistance (m²·K/W)"
+    cli.good("sweep", two, "--vary", f"{AREA}=4,9", "--figure", tmp_path / "a.png")
+    assert drawn[1].axes[0].get_ylabel() == "current (A)", "what the key changes is drawn"
 
 
 def test_a_swept_value_is_what_rank_predicts(two: Path) -> None:

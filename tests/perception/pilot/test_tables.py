@@ -206,6 +206,77 @@ def test_a_cell_means_an_icon_by_its_name_its_file_or_what_is_said_of_it(tmp_pat
         read_trials(written(tmp_path, "P1,1,num_3,num_3"), ICONS)
 
 
+@pytest.mark.parametrize(
+    "words", ["shown_{k} answer_{k}", "trial{k}_stimulus trial{k}_response", "icon.{k} responded.{k}"]
+)
+def test_a_row_of_each_person_may_call_its_columns_otherwise(tmp_path: Path, words: str) -> None:
+    first, second = (words.format(k=k).split() for k in (1, 2))
+    path = written(tmp_path, "P1,dip,dip,warm-step,", head=",".join(("participant", *first, *second)))
+    found = read_trials(path, ICONS)
+    assert (found.pooled.sum(), found.pooled[2, 2], found.unanswered[0, 1], found.total) == (1, 1, 1, 2)
+    with pytest.raises(TrialsError, match=f"{second[0]} stands alone"):
+        read_trials(written(tmp_path, "P1,dip,dip,dip", head=",".join(("participant", *first, second[0]))), ICONS)
+
+
+def test_columns_are_proposed_by_their_cells_and_not_by_their_names_alone(tmp_path: Path) -> None:
+    rows = (f"html,{k},{k // 2}-{k},P{k // 2},{'dip' if k else 'warm-step'},dip" for k in range(6))
+    path = written(tmp_path, *rows, head="trial_type,trial_index,node_id,subject,Q1,Q2_key")
+    theirs = {"participant": "subject", "trial": "trial_index", "presented": "Q1", "responded": "Q2_key"}
+    with pytest.raises(TrialsError, match="columns missing: participant, trial, presented, responded") as raised:
+        read_trials(path, ICONS)
+    assert raised.value.changes["columns"] == theirs
+    assert read_trials(path, ICONS, theirs).pooled[:, 2].tolist() == [0, 1, 5]
+
+
+def test_the_screens_of_a_trial_are_one_trial(tmp_path: Path) -> None:
+    rows = ["P1,1,dip,", "P1,1,dip,dip", "P1,2,dip,cool-step", "P1,2,dip,", "P1,3,dip,", "P1,3,dip,", "P1,4,dip,"]
+    found = read_trials(written(tmp_path, *rows), ICONS)
+    assert (found.total, found.passed, found.unanswered.sum()) == (4, 3, 2)
+    with pytest.raises(TrialsError, match="trial '1' twice"):
+        read_trials(written(tmp_path, "P1,9,dip,dip", *rows[:2], "P1,1,cool-step,"), ICONS)
+
+
+def test_another_word_for_what_was_not_felt_can_be_said_and_a_name_that_is_none_of_ours_is_refused(
+    tmp_path: Path,
+) -> None:
+    path = written(tmp_path, "P1,1,dip,dip", "P1,2,dip,nichts")
+    with pytest.raises(TrialsError, match="leave the cell empty, or put none for ICON"):
+        read_trials(path, ICONS)
+    assert read_trials(path, ICONS, {"none": "nichts"}).unanswered.sum() == 1
+    with pytest.raises(
+        TrialsError, match="dipp is neither a column of answers nor an icon of the set; did you mean dip"
+    ):
+        read_trials(path, ICONS, {"dipp": "nichts"})
+
+
+@pytest.mark.parametrize("coding", ["utf-8", "utf-16"])
+def test_the_log_of_e_prime_is_told_what_to_export(tmp_path: Path, coding: str) -> None:
+    path = tmp_path / "e.txt"
+    path.write_text("*** Header Start ***\nSubject: 1\n\t*** LogFrame Start ***\n\tIcon: dip\n", encoding=coding)
+    with pytest.raises(TrialsError, match="this is a log of E-Prime, not a table; export a table from E-DataAid"):
+        read_trials(path, ICONS)
+
+
+@pytest.mark.parametrize(
+    ("corner", "turned"), [("presented", False), ("stimulus/response", False), ("response\\stimulus", True)]
+)
+def test_the_corner_of_a_matrix_says_whether_its_rows_are_answers(tmp_path: Path, corner: str, turned: bool) -> None:
+    found = read_trials(written(tmp_path, "dip,7,3", "cool-step,0,5", head=f"{corner},dip,cool-step"), ICONS[::2])
+    assert found.pooled.tolist() == ([[5, 3], [0, 7]] if turned else [[5, 0], [3, 7]])
+
+
+def test_icons_and_answers_may_stand_in_cells_of_json(tmp_path: Path) -> None:
+    cell = '"{{""icon"": ""{}"", ""answer"": {{""name"": ""{}""}}}}"'
+    rows = (f"P1,1,{cell.format('dip', 'dip')}", f"P1,2,{cell.format('warm-step', 'dip')}", "P1,3,{}")
+    theirs = {"presented": "icon", "responded": "answer.name"}
+    found = read_trials(written(tmp_path, *rows, head="participant,trial,data"), ICONS, theirs)
+    assert (found.pooled[2, 2], found.pooled[1, 2], found.total, found.passed) == (1, 1, 2, 1)
+    with pytest.raises(TrialsError, match=r"presented is 'wave', which is not an icon"):
+        read_trials(
+            written(tmp_path, f"P1,1,{cell.format('wave', 'dip')}", head="participant,trial,data"), ICONS, theirs
+        )
+
+
 def test_two_icons_that_are_written_alike_need_their_own_names(tmp_path: Path) -> None:
     found = read_trials(written(tmp_path, "P1,1,a_b,A-b"), ("a-b", "A-b", "a_b"))
     assert found.pooled.tolist() == [[0, 0, 0], [0, 0, 0], [0, 1, 0]]

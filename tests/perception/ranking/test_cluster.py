@@ -1,3 +1,5 @@
+import json
+import os
 import re
 import signal
 import socket
@@ -108,3 +110,39 @@ def test_what_a_worker_with_other_code_computed_is_refused() -> None:
     assert cluster._result(own, "tcp://a") == "scores"
     with pytest.raises(ClusterError, match="tcp://a has another version of thermicon"):
         cluster._result(other, "tcp://a")
+
+
+SRUN = """#!/bin/bash
+ask=${1#--ntasks=}; shift
+for _ in $(seq "$ask"); do "$@" & done
+wait
+"""
+"""A stand-in that starts the tasks of a step on this machine, as Slurm starts them on its nodes."""
+
+
+@pytest.mark.slow
+def test_the_script_for_slurm_ranks_as_one_machine_does(tmp_path: Path) -> None:
+    page = (Path(__file__).parents[3] / "docs" / "how-to" / "large-families.md").read_text(encoding="utf-8")
+    script = page.partition("```bash\n")[2].partition("```")[0]
+    assert script.startswith("#!/bin/bash\n#SBATCH ")
+    activate = tmp_path / "thermicon" / "bin" / "activate"
+    activate.parent.mkdir(parents=True)
+    activate.write_text(f'export PATH="{Path(sys.executable).parent}:$PATH"\n')
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin" / "srun").write_text(SRUN)
+    (tmp_path / "bin" / "srun").chmod(0o755)
+    (tmp_path / "family.sh").write_text(script.replace("rank search-space", "rank six-icons --people 40 --intervals 0"))
+    paths = {
+        "HOME": str(tmp_path),
+        "TMPDIR": str(tmp_path),
+        "USER": "me",
+        "PATH": f"{tmp_path}/bin:{os.environ['PATH']}",
+    }
+    slurm = {"SLURM_JOB_ID": "7", "SLURM_NTASKS": "3"}
+    ran = subprocess.run(
+        ["bash", "family.sh"], cwd=tmp_path, env=os.environ | paths | slurm, capture_output=True, text=True, timeout=600
+    )
+    assert ran.returncode == 0, ran.stderr
+    far = json.loads((tmp_path / "ranking.json").read_text(encoding="utf-8"))
+    local = json.loads(rank(ICONS, RIG, people=40, parameters=0).to_json())
+    assert far["set"] == local["set"] and ran.stderr.count("Start worker at") >= 2

@@ -109,6 +109,9 @@ def test_counts_of_records_are_those_of_the_table() -> None:
     assert {r.site for r in table} == {record.get("recorded") for record in sites}
     for site in ("thenar", "left thenar", "hand-dorsum", "Hand dorsum", "forearm", "wrist"):
         assert outside_site(site) == ()
+    for site, meant in (("finger tip", "fingertip"), ("forhead", "forehead"), ("wrst", "wrist")):
+        assert f"the {site} (did you mean {meant}?)" in outside_site(site)[0]
+    assert not any("did you mean" in outside_site(site)[0] for site in ("head", "back", "hand", "toe"))
 
 
 def test_a_ranking_carries_it() -> None:

@@ -1,0 +1,84 @@
+"""What the page is given to play, and a version pinned beside the present one, without a browser."""
+
+from typing import Any
+
+import numpy
+import pytest
+
+from tests.notebooks.workbench.openbench import wait
+from thermicon.circuit import Rig, simulate
+from thermicon.icons import parse
+from thermicon.notebooks.timeline.frames import WORDS
+from thermicon.notebooks.workbench.design_model import DesignModel
+from thermicon.notebooks.workbench.reel import reel_of, shipped_texts
+from thermicon.notebooks.workbench.set_strip import SetStrip
+
+TWO = """cue 1; icon near { warm by 4 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }
+icon faint { warm by 0.1 °C at 0.1 °C/s; return at 0.1 °C/s }
+"""
+
+
+@pytest.fixture
+def design() -> DesignModel:
+    return DesignModel(TWO, Rig.load("thenar"))
+
+
+def test_a_preview_lasts_as_long_as_the_icon_and_what_is_felt_of_it(design: DesignModel) -> None:
+    near, faint = (frame.meta["play"] for frame in reel_of(design)[0])
+    percept = design.scene.drawing.percept
+    assert (near["onset"], near["quality"]) == (percept.onset_s, "warm")
+    assert near["until"] > 6.0, "warmth goes on after the icon"
+    assert numpy.interp(near["until"] + 0.1, percept.time_s, percept.psi_warm) < 1.0
+    assert (faint["felt"], faint["until"]) == (False, pytest.approx(2.0))
+    assert faint["share"] < 0.5
+    design.receive({"type": "text", "text": "cue 1; icon a { hold for 1 }"})
+    assert reel_of(design) == ([], "not played: the text has errors")
+
+
+def test_sides_change_with_text_icon_rig_and_knobs_and_change_back(design: DesignModel) -> None:
+    assert "nothing is pinned" in design.receive({"type": "swap"}).meta["notes"][0]
+    design.turn({"contact.area_cm2": 4.0})
+    pinned = design.receive({"type": "pin"})
+    curves = {panel["key"]: [each["key"] for each in panel["pinned"]] for panel in pinned.meta["panels"]}
+    assert curves == {"temperature": ["skin"], "heat": ["skin"], "current": ["current"], "sensation": ["cold", "warm"]}
+    behind = pinned.meta["panels"][0]["pinned"][0]["buffer"]
+    design.take_rig(Rig.load("fingertip"))
+    now = design.receive({"type": "text", "text": TWO.replace("icon near", "icon nigh").replace("by 4", "by 3")})
+    assert numpy.array_equal(now.buffers[behind], pinned.buffers[behind])
+    design.receive({"type": "swap"})
+    assert (design.text, design.rig.name, design.scene.icon) == (TWO, "thenar", "near")
+    assert design.values == {"contact.area_cm2": 4.0}
+    design.receive({"type": "swap"})
+    assert (design.rig.name, design.scene.icon, design.values) == ("fingertip", "nigh", {})
+    assert design.receive({"type": "undo"}).meta["text"] == TWO
+    assert "pinned" not in design.receive({"type": "unpin"}).meta
+
+
+def test_both_sides_are_ranked_even_where_one_was_changed_at_once(
+    design: DesignModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, value in (("QUICK", (4, 0)), ("WELL", (24, 2))):
+        monkeypatch.setattr(f"thermicon.notebooks.workbench.set_strip.{name}", value)
+    sent: list[dict[str, Any]] = []
+    strip = SetStrip(design, sent.append)
+    design.on_change(strip.renew)
+    strip.shown = True
+    design.receive({"type": "pin"})
+    design.receive({"type": "text", "text": TWO.replace("by 0.1", "by 3")})
+    assert [row["set"] for row in sent[-1]["sides"]] == ["–", "–"]
+    wait(strip.worker)
+    pinned, now = sent[-1]["sides"]
+    assert (pinned["side"], pinned["what"], now["side"]) == ("pinned", "near, thenar", "now")
+    assert float(pinned["set"].strip("≈ %")) < float(now["set"].strip("≈ %"))
+    assert now["worst"].startswith(("faint and near", "near and faint"))
+    design.receive({"type": "unpin"})
+    assert sent[-1]["sides"] == []
+
+
+def test_all_that_the_palette_offers_is_cue_text_and_its_shapes_are_reached() -> None:
+    offered = [text for texts in shipped_texts().values() for text in texts.values()]
+    assert len(offered) > 30
+    for text in offered:
+        assert len(parse(f"cue 1\nset {{ control display; baseline 32 °C }}\n{text}")) >= 1
+    for shape in WORDS["shapes"].values():
+        assert simulate(parse(f"cue 1; icon a {{ {shape.replace(chr(10), '; ')} }}").icons[0], "thenar").reachable
