@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from thermicon.base.numbers.arrays import Array
-
 from ..rig.rig import Rig
-from ..safety.demands import CutOff, Demands, HeldCutOff
+from ..safety.demands import DEMANDS, Demands
 from ..solver.batch_inputs import Intervals, State, bank_of, run_on
 from ..solver.network import COLD, HOT, network_of
 from ..solver.steady import state_under_current
@@ -20,65 +18,60 @@ from .logged_line import LineRow
 
 TURN_S = 0.01
 LONGEST_SILENCE_S = 1.0
-"""A device waits for its host for so long at most, however long a drive would be safe without it."""
+"""A device waits so long for its host, however long a drive would be safe without it."""
 NOISE_K = 0.002
 
 
-@dataclass(frozen=True, slots=True)
-class ControllerSettings:
-    """What a controller is set to: watchdog s, cut-offs, currents A, gains A/K, A/(K·s), A·s/K, sensor's lag s."""
-
-    watchdog_s: float
-    cut: CutOff
-    held: HeldCutOff | None
-    limits_A: tuple[float, float]
-    gains: tuple[float, float, float]
-    lag_s: float
-
-    @staticmethod
-    def of(demands: Demands, peak_A: float) -> ControllerSettings:
-        """What drives demand that need at most a current; one limit for both signs unless they need more."""
-        assert demands.loop is not None and demands.current_limit_A is not None
-        low_A, high_A = demands.current_limit_A
-        both_A = max(min(-low_A, high_A), peak_A)
-        return ControllerSettings(
-            min(demands.watchdog_s, LONGEST_SILENCE_S),
-            replace(demands.cut_off_display_C, react_within_s=TURN_S),
-            demands.held_cut_off_display_C,
-            (max(low_A, -both_A), min(high_A, both_A)),
-            demands.loop.played,
-            demands.loop.playing_sensor_lag_s,
-        )
+def settings_of(demands: Demands, peak_A: float) -> Demands:
+    """What a controller is set to that meets demands; one current limit for both signs, unless drives need more."""
+    assert demands.loop is not None
+    assert demands.current_limit_A is not None
+    low_A, high_A = demands.current_limit_A
+    both_A = max(min(-low_A, high_A), peak_A)
+    kp, ki, _ = demands.loop.played
+    return replace(
+        demands,
+        watchdog_s=min(demands.watchdog_s or LONGEST_SILENCE_S, LONGEST_SILENCE_S),
+        cut_off_display_C=replace(demands.cut_off_display_C, react_within_s=TURN_S),
+        current_limit_A=(max(low_A, -both_A), min(high_A, both_A)),
+        zero_current_at_most_s=0.0,  # no hand is on it
+        loop=replace(
+            demands.loop,
+            kp_A_per_K=(kp, kp),
+            ki_A_per_Ks=(ki, ki),
+            delay_at_most_s=TURN_S,
+            sensor_lag_at_most_s=demands.loop.playing_sensor_lag_s,
+        ),
+    )
 
 
 class SimulatedController:
-    """The circuit of a rig under a loop that turns a hundred times a second, as a `LoggedLine`.
+    """The circuit of a rig under a loop with a watchdog and a cut-off, as a `LoggedLine`.
 
-    It goes on by itself: each call first makes the turns that the clock asks for. Its two sensors lag alike, with noise
-    of 2 mK. A stop by itself is left by `open` alone.
+    Each call first makes the turns that the clock asks for. Both sensors lag alike, with noise of 2 mK. Only `open`
+    ends a stop.
     """
 
-    def __init__(self, rig: Rig, settings: ControllerSettings, clock: Callable[[], float], seed: int = 0) -> None:
+    def __init__(self, rig: Rig, settings: Demands, clock: Callable[[], float], seed: int = 0) -> None:
         self._rig, self._settings, self._clock = rig, settings, clock
-        self._bank, self._lane = bank_of(rig), np.zeros(1, dtype=np.int64)
-        self._nodes_C: Array = state_under_current(network_of(rig), 0.0)
+        self._bank = bank_of(rig)
+        self._nodes_C = state_under_current(network_of(rig), 0.0)
         self._felt_C = self._display_C = float(self._nodes_C[COLD])
         self._noise = np.random.default_rng(seed)
         self._read_C = (self._felt_C, self._felt_C)
         self._goal_C: float | None = None
         self._test_A: float | None = None
         self._integral_A = self._current_A = self._beyond_s = 0.0
-        self._begun_s = self._fed_s = self._turned_s = clock()
+        self._begun_s = self._turned_s = self._fed_s = clock()
         self._turns = 0
         self._stopped = ""
         self._rows: list[LineRow] = []
-        self._lock = threading.RLock()
+        self._lock = threading.Lock()  # sensors are read in a thread of their own
 
     def open(self) -> None:
         """Leave a stop; nothing is put out."""
-        with self._lock:
-            self._go_on()
-            self._stopped = ""
+        self._go_on()
+        self._stopped = ""
 
     def send(self, row: float) -> None:
         """Hold the display at a set-point in °C."""
@@ -91,15 +84,13 @@ class SimulatedController:
 
     def feed(self) -> None:
         """Count the silence of the host from now on."""
-        with self._lock:
-            self._go_on()
-            self._fed_s = self._clock()
+        self._go_on()
+        self._fed_s = self._clock()
 
     def off(self) -> None:
         """Put out nothing."""
-        with self._lock:
-            self._go_on()
-            self._goal_C = self._test_A = None
+        self._go_on()
+        self._goal_C = self._test_A = None
 
     def read(self) -> float:
         """Return the °C of the loop's sensor."""
@@ -111,54 +102,49 @@ class SimulatedController:
 
     def rows(self) -> list[LineRow]:
         """Return the turns since the last call."""
+        self._go_on()
         with self._lock:
-            self._go_on()
             rows, self._rows = self._rows, []
-            return rows
+        return rows
 
     def status(self) -> Mapping[str, object]:
         """Return what it is set to, by the names of demands."""
-        own, held = self._settings, self._settings.held
-        with self._lock:
-            self._go_on()
-        return {
-            "identity": f"simulated controller on the circuit of rig {self._rig.name}",
-            "stopped": self._stopped,
-            "watchdog_s": own.watchdog_s,
-            "cut_off_display_C": (own.cut.low, own.cut.high, own.cut.react_within_s),
-            "held_cut_off_display_C": (held.low, held.high, held.longer_than_s) if held else None,
-            "current_limit_A": own.limits_A,
-            "loop": (*own.gains, own.lag_s, TURN_S),
-            "zero_current_at_most_s": 0.0,  # no hand is on it
-            "second_sensor": True,
-        }
+        self._go_on()
+        identity = f"simulated controller on the circuit of rig {self._rig.name}"
+        settings = {name: getattr(self._settings, name) for name in DEMANDS}
+        return {**settings, "identity": identity, "stopped": self._stopped}
 
     def _put(self, goal_C: float | None, test_A: float | None) -> None:
-        with self._lock:
-            self._go_on()
-            if self._goal_C is None and self._test_A is None:
-                self._fed_s, self._integral_A = self._clock(), 0.0
-            if not self._stopped:
-                self._goal_C, self._test_A = goal_C, test_A
+        self._go_on()
+        if not self._is_on:
+            self._fed_s, self._integral_A = self._clock(), 0.0
+        if not self._stopped:
+            self._goal_C, self._test_A = goal_C, test_A
+
+    @property
+    def _is_on(self) -> bool:
+        return self._goal_C is not None or self._test_A is not None
 
     def _reading(self, sensor: int) -> float:
-        with self._lock:
-            self._go_on()
-            if self._stopped:
-                raise RuntimeError(f"the device switched off by itself: {self._stopped}")
-            return self._read_C[sensor]
+        self._go_on()
+        if self._stopped:
+            raise RuntimeError(f"the device switched off by itself: {self._stopped}")
+        return self._read_C[sensor]
 
     def _go_on(self) -> None:
         """Make the turns until now."""
-        now_s = self._clock()
-        while self._turned_s + TURN_S <= now_s + 1e-9:
-            self._turns += 1
-            self._turned_s = self._begun_s + TURN_S * self._turns
-            self._turn()
+        with self._lock:
+            now_s = self._clock()
+            while self._turned_s + TURN_S <= now_s + 1e-9:
+                self._turns += 1
+                self._turned_s = self._begun_s + TURN_S * self._turns
+                self._turn()
 
     def _turn(self) -> None:
-        display_C, before_C, lag_s = float(self._nodes_C[COLD]), self._felt_C, max(self._settings.lag_s, 1e-6)
-        decay = math.exp(-TURN_S / lag_s)
+        """Read, check, put out a current until the next turn, and let the circuit follow."""
+        display_C, lag_s = float(self._nodes_C[COLD]), self._settings.loop.sensor_lag_at_most_s  # type: ignore[union-attr]
+        before_C = self._felt_C
+        decay = math.exp(-TURN_S / lag_s) if lag_s > 0.0 else 0.0
         mean = (1.0 - decay) * lag_s / TURN_S  # of what was felt, while the display was linear
         self._felt_C = decay * before_C + (mean - decay) * self._display_C + (1.0 - mean) * display_C
         self._display_C = display_C
@@ -170,19 +156,18 @@ class SimulatedController:
         module = self._rig.module
         back_V = module.seebeck_V_per_K * (float(self._nodes_C[HOT]) - display_C)
         self._current_A = self._wanted_A((self._felt_C - before_C) / TURN_S, back_V)
-        volts = back_V + self._current_A * module.resistance_ohm
-        self._rows.append(LineRow(self._turned_s, self._goal_C, *self._read_C, self._current_A, volts))
-        flow_A = np.full((1, 1), self._current_A)
-        held = Intervals(np.array([0.0, TURN_S]), np.array([-1, 0]), flow_A, flow_A)
+        voltage_V = back_V + self._current_A * module.resistance_ohm
+        self._rows.append(LineRow(self._turned_s, self._goal_C, *self._read_C, self._current_A, voltage_V))
+        lane, flow_A = np.zeros(1, dtype=np.int64), np.full((1, 1), self._current_A)
+        turn = Intervals(np.array([0.0, TURN_S]), np.array([-1, 0]), flow_A, flow_A)
         state = State(self._nodes_C[np.newaxis])
-        self._nodes_C = run_on(self._bank, self._lane, self._lane, held, state, ("display_C",))[1].nodes_C[0]
+        self._nodes_C = run_on(self._bank, lane, lane, turn, state, ("display_C",))[1].nodes_C[0]
 
     def _check(self, second_C: float) -> None:
         """The device's own stops, by its own sensor and clock."""
-        own, cut, held = self._settings, self._settings.cut, self._settings.held
-        is_on = self._goal_C is not None or self._test_A is not None
-        if is_on and self._turned_s - self._fed_s > own.watchdog_s:
-            self._stopped = f"the host was silent for {own.watchdog_s:g} s"
+        cut, held = self._settings.cut_off_display_C, self._settings.held_cut_off_display_C
+        if self._is_on and self._turned_s - self._fed_s > self._settings.watchdog_s:
+            self._stopped = f"the host was silent for {self._settings.watchdog_s:g} s"
         if not cut.low <= second_C <= cut.high:
             self._stopped = f"its second sensor read {second_C:.2f} °C, outside {cut.low:g} … {cut.high:g} °C"
         if held is not None:
@@ -193,10 +178,12 @@ class SimulatedController:
 
     def _wanted_A(self, rate_K_per_s: float, back_V: float) -> float:
         """The current of the loop or of a test, within the limits of current and voltage; the integral stops there."""
-        kp, ki, kd = self._settings.gains
+        assert self._settings.loop is not None
+        assert self._settings.current_limit_A is not None
+        kp, ki, kd = self._settings.loop.played
         most_V, ohm = self._rig.driver.voltage_limit_V, self._rig.module.resistance_ohm
-        low_A = max(self._settings.limits_A[0], (-most_V - back_V) / ohm)
-        high_A = min(self._settings.limits_A[1], (most_V - back_V) / ohm)
+        low_A = max(self._settings.current_limit_A[0], (-most_V - back_V) / ohm)
+        high_A = min(self._settings.current_limit_A[1], (most_V - back_V) / ohm)
         if self._goal_C is None:
             return min(max(self._test_A, low_A), high_A) if self._test_A else 0.0
         error_K = self._read_C[0] - self._goal_C

@@ -2,72 +2,39 @@
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass
-from itertools import chain
-from typing import Any, NamedTuple, cast
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 from thermicon.base.files.inputs import InputError
 from thermicon.base.words.near_words import did_you_mean
 
 from ..play.watch import Refused
-from ..safety.demands import Demands, How
+from ..safety.demands import CutOff, Demands, HeldCutOff, How, Loop
 
-Numbers = Sequence[float]
-
-
-class Asked(NamedTuple):
-    """A kind of demand: what people call it, how it and what a device holds are written, when that is strict enough."""
-
-    label: str
-    demand: str
-    held: str
-    is_met: Callable[[Numbers, Numbers], bool]
-
-
-def _inside(asked: Numbers, held: Numbers) -> bool:
-    return asked[0] <= held[0] and held[1] <= asked[1] and all(map(operator.le, held[2:], asked[2:]))
-
-
-def _is_loop_met(asked: Numbers, held: Numbers) -> bool:
-    least_kp, most_kp, least_ki, most_ki, asked_kd, most_delay_s, most_lag_s, *_ = asked
-    kp, ki, kd, lag_s, delay_s = held
-    gains = least_kp <= kp <= most_kp and least_ki <= ki <= most_ki and kd == asked_kd
-    return gains and lag_s <= most_lag_s and delay_s <= most_delay_s
-
-
-def _never(asked: Numbers, held: Numbers) -> bool:
-    return False
-
-
-ASKED = {
-    "watchdog_s": Asked("watchdog", "{:g} s", "off after {:g} s of silence", lambda a, h: 0.0 < h[0] <= a[0]),
-    "cut_off_display_C": Asked(
-        "cut-off", "{:g} … {:g} °C within {:g} s", "set to {:g} … {:g} °C, within {:g} s", _inside
-    ),
-    "held_cut_off_display_C": Asked(
-        "second cut-off", "{:g} … {:g} °C for {:g} s with current", "set to {:g} … {:g} °C, for {:g} s", _inside
-    ),
-    "polarity_check": Asked("polarity", "after {1:g} s off, {2:g} A cools by {4:g} K in {3:g} s", "", _never),
-    "rest_before_first_play_s": Asked("rest", "{:g} s before the first play", "", _never),
-    "pause_at_least_s": Asked("pause", "{:g} s", "", _never),
-    "zero_current_at_most_s": Asked("zero current", "{:g} s", "no hand for longer", lambda a, h: h[0] <= a[0]),
-    "current_limit_A": Asked("current limit", "{:g} … {:g} A", "set to {:g} … {:g} A", _inside),
-    "loop": Asked(
+WORDS = {
+    "watchdog_s": ("watchdog", "{:g} s"),
+    "cut_off_display_C": ("cut-off", "{0.low:g} … {0.high:g} °C within {0.react_within_s:g} s"),
+    "held_cut_off_display_C": ("second cut-off", "{0.low:g} … {0.high:g} °C for {0.longer_than_s:g} s with current"),
+    "polarity_check": ("polarity", "{0.test_current_A:g} A cools by {0.display_change_at_least_K:g} K"),
+    "rest_before_first_play_s": ("rest", "{:g} s"),
+    "pause_at_least_s": ("pause", "{:g} s"),
+    "zero_current_at_most_s": ("zero current", "{:g} s"),
+    "current_limit_A": ("current limit", "{0[0]:g} … {0[1]:g} A"),
+    "loop": (
         "loop",
-        "{:g} to {:g} A/K, {:g} to {:g} A/(K·s), second sensor",
-        "set to {:g} A/K, {:g} A/(K·s), {:g} A·s/K; sensor late by {:g} s, output by {:g} s",
-        _is_loop_met,
+        "{0.kp_A_per_K[0]:g} … {0.kp_A_per_K[1]:g} A/K, {0.ki_A_per_Ks[0]:g} … {0.ki_A_per_Ks[1]:g} A/(K·s), sensor "
+        "late by {0.sensor_lag_at_most_s:g} s",
     ),
 }
-"""The demands of a sidecar, by name."""
-BY_PLAYER = {
+"""Demands by name: their label, and how a demand and what a device holds are written."""
+BY_PLAYER: dict[str, tuple[How, str]] = {
     "polarity_check": ("proven", "both sensors must fall"),
-    "rest_before_first_play_s": ("held", "kept by this program"),
-    "pause_at_least_s": ("held", "kept by this program"),
+    "rest_before_first_play_s": ("held", "by this program"),
+    "pause_at_least_s": ("held", "by this program"),
 }
-"""How demands are met whatever the device is."""
+"""What meets demands whatever the device is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,48 +49,57 @@ class MetDemand:
 
 def statements_of(texts: Sequence[str]) -> dict[str, str]:
     """Statements of people by the name of a demand; InputError for one without a demand or a name."""
-    names = {kind.label: name for name, kind in ASKED.items()}
-    said = {}
+    names = {label: name for name, (label, _) in WORDS.items()}
+    statements = {}
     for text in texts:
-        label, colon, rest = (part.strip() for part in text.partition(":"))
-        what, comma, who = (part.strip() for part in rest.rpartition(","))
-        if not (colon and comma and what and who):
+        label, _, rest = (part.strip() for part in text.partition(":"))
+        what, _, who = (part.strip() for part in rest.rpartition(","))
+        if not what or not who:
             raise InputError(f"{text!r} is no statement; write DEMAND: WHAT, WHO, as in 'current limit: fuse, A. Name'")
         if label not in names:
             raise InputError(f"{label!r} is no demand; {did_you_mean(label, names)}")
-        said[names[label]] = f"{what}, {who}"
-    return said
+        statements[names[label]] = f"{what}, {who}"
+    return statements
 
 
 def met_demands(demands: Demands, status: Mapping[str, Any], stated: Mapping[str, str]) -> tuple[MetDemand, ...]:
-    """How each demand is met by a device that says what it holds; what is proven is so once the proofs were made."""
+    """How each demand is met by a device that says what it holds; a watchdog is proven before the first play."""
     rows = []
     for name in demands.demanded:
-        kind, asked = ASKED[name], _numbers(demands.rest_s if "rest" in name else getattr(demands, name))
-        held = None if status.get(name) is None else _numbers(status[name])
-        has_sensor = name != "loop" or bool(status.get("second_sensor"))
-        how, by = ("missing", "the device does not hold it; state who does")
-        if name in BY_PLAYER:
-            how, by = BY_PLAYER[name]
-        elif held is not None and has_sensor and kind.is_met(asked, held):
-            how, by = "proven" if name == "watchdog_s" else "held", kind.held.format(*held)
-        elif name in stated:
+        label, text = WORDS[name]
+        asked, held = demands.rest_s if "rest" in name else getattr(demands, name), status.get(name)
+        how, by = BY_PLAYER.get(name, ("missing", "the device does not hold it; state who does"))
+        if how == "missing" and held is not None and _is_inside(held, asked):
+            how, by = "proven" if name == "watchdog_s" else "held", text.format(held).replace("-", "−")
+        elif how == "missing" and name in stated:
             how, by = "stated", stated[name]
-        demand = kind.demand.format(*asked).replace("-", "−")
-        rows.append(MetDemand(kind.label, demand, cast(How, how), by.replace(" -", " −")))
+        rows.append(MetDemand(label, text.format(asked).replace("-", "−"), how, by))
     return tuple(rows)
 
 
 def refuse_missing(rows: Sequence[MetDemand]) -> None:
     """Refuse to play where a demand is missing."""
-    missing = [row for row in rows if row.how == "missing"]
+    missing = [f"{row.label} ({row.demand})" for row in rows if row.how == "missing"]
     if missing:
-        needs = "; ".join(f"{row.label} ({row.demand})" for row in missing)
-        raise Refused(f"nothing was put out, since nobody provides: {needs}; set the device, or state who does")
+        raise Refused(f"nothing was put out, since nobody provides: {'; '.join(missing)}; set the device, or state who")
 
 
-def _numbers(held: Any) -> list[float]:
-    """All numbers of a demand, or of what a device holds, in order."""
-    if is_dataclass(held):
-        held = [getattr(held, each.name) for each in fields(held)]
-    return list(chain.from_iterable(map(_numbers, held))) if isinstance(held, list | tuple) else [float(held)]
+def _is_inside(held: Any, asked: Any) -> bool:
+    spans = zip(_spans(held), _spans(asked), strict=True)
+    return all(within[0] <= span[0] and span[1] <= within[1] for span, within in spans)
+
+
+def _spans(demand: Any) -> list[tuple[float, float]]:
+    """What a demand allows, as the least and the most of each number."""
+    match demand:
+        case CutOff():
+            return [(demand.low, demand.high), (-math.inf, demand.react_within_s)]
+        case HeldCutOff():
+            return [(demand.low, demand.high), (-math.inf, demand.longer_than_s)]
+        case Loop():
+            most = (demand.delay_at_most_s, demand.sensor_lag_at_most_s, demand.sensor_offset_at_most_K)
+            gains = [demand.kp_A_per_K, demand.ki_A_per_Ks, (demand.kd_As_per_K, demand.kd_As_per_K)]
+            return [*gains, *((-math.inf, each) for each in most)]
+        case (low, high):
+            return [(low, high)]
+    return [(-math.inf, float(demand))]

@@ -1,4 +1,4 @@
-"""A line to a device that also says what it reads and puts out."""
+"""A line to a device that also reports what it reads and puts out."""
 
 from __future__ import annotations
 
@@ -19,11 +19,7 @@ class LineRow(NamedTuple):
 
 
 class LoggedLine(Line, Protocol):
-    """A line whose device measures the display by two sensors and reports each turn of its loop.
-
-    `status` has what the device holds by names of demands, with `identity`, `stopped` (why it switched off by itself,
-    else empty) and `second_sensor`.
-    """
+    """A line whose device measures the display and reports each turn; `status` also has `identity` and `stopped`."""
 
     def read(self) -> float:
         """Return the °C of the loop's sensor; raises where the device has switched off by itself."""

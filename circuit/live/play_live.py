@@ -5,30 +5,33 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from thermicon.base.checks.arguments import checked
-from thermicon.base.files.atomic import OutputError, check_folder, kept_text
 from thermicon.base.files.inputs import InputError
 from thermicon.base.numbers.program import this_program
 from thermicon.icons.files.shipped import Icons, by_name
 
+from ..delivery.delivered_drive import ModuleDrive
 from ..delivery.device import Device
+from ..delivery.export import Export
+from ..delivery.export_folder import check_export_folder
 from ..delivery.formats.psychopy import guard_numbers
 from ..delivery.pack import digest
 from ..play.watch import Numbers, Refused
 from ..rig.rig import AnyRig, Rig, rig_of
 from ..safety.demands import Demands
-from .controller import LONGEST_SILENCE_S, ControllerSettings, SimulatedController
+from .controller import LONGEST_SILENCE_S, SimulatedController, settings_of
 from .demanded import MetDemand, met_demands, refuse_missing, statements_of
-from .live_player import LivePlayer, Proofs, play_in_order
+from .live_player import LivePlayer, play_in_order
 from .play_log import MeasuredPlay, PlayLog
-from .ready import CONTROLLER, ReadySet, judged
+from .ready import CONTROLLER, judged
 
 LOOK_EVERY_S = 0.05
 SIMULATED = "a simulated controller"
+NEVER_REPLACED = "give a new or empty folder, since a log is never overwritten"
 USUAL_PAUSE_S = 10.0
 """As the gap of a session; a display is then back where the prediction of a play begins, within some hundredths."""
 
@@ -50,19 +53,17 @@ class SimulatedTime:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LiveResult:
-    """The result of live play.
+    """The result of live play: `plays` in order, and why it was `stopped`, empty where everything was played.
 
-    `plays` has what was measured of each icon in order, `stopped` why it was stopped, empty where everything was
-    played; `demands` how each demand of the gate was met, `proofs` what was shown before the first play, `status` what
-    the device says that it holds. `rig` has the device's sensors as probes; without a `folder` nothing was written.
+    `demands` says how each demand of the gate was met, `proofs` what was shown before the first play (s and K),
+    `status` what the device says that it holds. Without a `folder` nothing was written.
     """
 
     plays: tuple[MeasuredPlay, ...]
     stopped: str
     demands: tuple[MetDemand, ...]
-    proofs: Proofs
+    proofs: Mapping[str, float]
     status: Mapping[str, Any]
-    rig: Rig
     folder: Path | None
 
     def __repr__(self) -> str:
@@ -76,7 +77,7 @@ def play_live(
     rig: AnyRig = None,
     device: Device | str = CONTROLLER,
     *,
-    order: Sequence[str] | None = None,
+    order: Sequence[str] = (),
     pause_s: float | None = None,
     amber: bool = False,
     stated: Sequence[str] = (),
@@ -98,7 +99,7 @@ def play_live(
     device
         The temperature controller whose steps and rate set-points have, or the name or file of one.
     order
-        Names in the order in which they are played, which may repeat; None: each icon once.
+        Names in the order in which they are played, which may repeat; empty: each icon once.
     pause_s
         Pause in s between plays; None: 10 s, or more where the gate demands more.
     amber
@@ -133,64 +134,70 @@ def play_live(
     if not chosen:
         raise InputError("there is no icon to play; give at least one")
     on = Rig.of(rig, chosen[0].context.site)
-    made = judged(chosen, on, device if isinstance(device, Device) else Device.load(device), pause_s, None)
-    if made.barred:
-        raise Refused("; ".join(f"{name}: {refusal}" for name, refusal in made.barred))
-    ready = ReadySet.of(made)
-    if ready.amber and not amber:
-        raise Refused(f"amber, since {ready.amber[0]}: amber=True plays it")
-    now = SimulatedTime()
-    clock, sleep = (time.monotonic, time.sleep) if real_time else (now, now.sleep)
-    pause_s = USUAL_PAUSE_S if pause_s is None else pause_s
-    return play_ready(ready, order, clock, sleep, pause_s, stated, None if folder is None else Path(folder))
+    made = judged(chosen, on, device if isinstance(device, Device) else Device.load(device), pause_s)
+    where = None if folder is None else Path(folder)
+    return play_export(made, order, pause_s=pause_s, amber=amber, stated=stated, folder=where, real_time=real_time)
 
 
-def play_ready(
-    ready: ReadySet,
-    order: Sequence[str] | None,
-    clock: Callable[[], float],
-    sleep: Callable[[float], None],
-    pause_s: float = 0.0,
+def play_export(
+    made: Export,
+    order: Sequence[str] = (),
+    *,
+    pause_s: float | None = None,
+    amber: bool = False,
     stated: Sequence[str] = (),
     folder: Path | None = None,
-    *,
+    real_time: bool = False,
     why_stop: Callable[[], str] = str,
     tell: Callable[[str], None] = lambda text: None,
     checks_only: bool = False,
 ) -> LiveResult:
-    """Play drives that the gate has judged on the simulated controller, or only prepare it (`checks_only`)."""
-    names = list(order or ready.drives)
-    unknown = [name for name in names if name not in ready.drives]
+    """Play drives of an export on the simulated controller, or only prepare it (`checks_only`)."""
+    if made.barred:
+        raise Refused("; ".join(f"{name}: {refusal}" for name, refusal in made.barred))
+    cautions = [text for each in made.prepared if each.verdict.colour == "amber" for text in each.verdict.cautions]
+    if cautions and not amber:
+        raise Refused(f"the gate says amber: {cautions[0]}; ask for amber to play it nevertheless")
+    known = {each.delivery.icon.name: each.delivery for each in made.prepared if isinstance(each.delivery, ModuleDrive)}
+    unknown = [name for name in order if name not in known]
     if unknown:
-        raise InputError(f"{unknown[0]} is not among the icons that were exported: {', '.join(ready.drives)}")
-    drives, said = [ready.drives[name] for name in names], statements_of(stated)
-    peak_A = max(drive.peak_A for drive in drives)
-    line = SimulatedController(ready.rig, ControllerSettings.of(ready.demands, peak_A), clock)
-    met = met_demands(ready.demands, line.status(), said)
+        raise InputError(f"{unknown[0]} is not among the icons that were exported: {', '.join(known)}")
+    drives = [known[name] for name in order or known]
+    demands = Demands.strictest([each.verdict.demands for each in made.prepared])
+    peak_A = max(float(abs(drive.trace.current_A).max()) for drive in drives)
+    now = SimulatedTime()
+    clock, sleep = (time.monotonic, time.sleep) if real_time else (now, now.sleep)
+    line = SimulatedController(made.rig, settings_of(demands, peak_A), clock)
+    met = met_demands(demands, line.status(), statements_of(stated))
     refuse_missing(met)
-    if folder is not None:
-        _begin_folder(folder, ready.rig)
-    log = PlayLog(
-        folder, {"device": SIMULATED, "thermicon": this_program(), "rig_sha256": digest(ready.rig.document.encode())}
-    )
-    numbers = live_numbers(ready.demands, any(row.label == "cut-off" and row.how == "held" for row in met))
-    player = LivePlayer(line, numbers, log, clock, sleep, why_stop, tell)
-
-    def settings() -> dict[str, object]:
-        return {
-            "status": line.status(),
-            "demands": [asdict(row) for row in met],
-            "proofs": asdict(player.proofs),
-            "timing": {"worst_gap_s": player.worst_gap_s},
-        }
-
-    log.mark(SIMULATED)
-    plays: tuple[MeasuredPlay, ...] = ()
+    numbers = live_numbers(demands, any(row.label == "cut-off" and row.how == "held" for row in met))
     if checks_only:
-        why = player.check(drives[0].rows[0][1])
-    else:
-        plays, why = play_in_order(player, drives, pause_s, settings)
-    return LiveResult(plays, why, met, player.proofs, line.status(), ready.rig, folder)
+        numbers = numbers._replace(rest_s=0.0, pause_s=0.0)
+    if folder is not None:
+        _begin_folder(folder, made.rig)
+    log = PlayLog(folder)
+    player = LivePlayer(line, numbers, log, clock, sleep, why_stop, tell)
+    log.mark(SIMULATED)
+    stopped = ""
+    try:
+        stopped = play_in_order(player, drives, USUAL_PAUSE_S if pause_s is None else pause_s, plays=not checks_only)
+    except Refused as problem:
+        stopped = str(problem)
+        raise
+    finally:
+        about = {
+            "device": SIMULATED,
+            "thermicon": this_program(),
+            "rig_sha256": digest(made.rig.document.encode()),
+            "drives_sha256": {name: digest(made.form.write(drive)) for name, drive in known.items()},
+            "status": line.status(),
+            "demands": met,
+            "proofs": player.proofs,
+            "timing": {"worst_gap_s": player.worst_gap_s},
+            "stopped": stopped,
+        }
+        plays = log.finish(about)
+    return LiveResult(() if checks_only else plays, stopped, met, player.proofs, line.status(), folder)
 
 
 def live_numbers(demands: Demands, device_protects: bool) -> Numbers:
@@ -204,17 +211,9 @@ def live_numbers(demands: Demands, device_protects: bool) -> Numbers:
     return numbers._replace(look_every_s=min(numbers.look_every_s, LOOK_EVERY_S))
 
 
-def check_play_folder(folder: Path) -> None:
-    """Raise OutputError for a folder that is not new or empty, or cannot be made."""
-    check_folder(folder)
-    there = sorted(path.name for path in folder.iterdir()) if folder.exists() else []
-    if there:
-        raise OutputError(f"{kept_text(folder, there)}; give a new or empty folder, since a log is never overwritten")
-
-
 def _begin_folder(folder: Path, rig: Rig) -> None:
     """Make the folder, with the rig that its logs are of."""
-    check_play_folder(folder)
+    check_export_folder(folder, how=NEVER_REPLACED)
     folder.mkdir(exist_ok=True)
     document = json.loads(rig.document)
     notes = [*document.get("notes", []), f"the logs beside this file are of {SIMULATED}"]

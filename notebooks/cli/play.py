@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -13,14 +12,12 @@ from ..messages import REFUSED, STOPPED, MissingArgument, note, progress_bar, us
 from ..report.gate_words import CAUTION
 from ..report.play_report import check_report, play_report
 from ..report.terminal import show
-from .export import LONGEST_PAUSE_S, refused
+from .export import LONGEST_PAUSE_S, refused, verify_folder
 from .options import FileName, RigOptions, flag, opt, out, pick, read_set
 from .stop_key import is_watched, stop_key
 
 if TYPE_CHECKING:
     from thermicon.circuit import Export
-
-    from ..messages import Progress
 
 
 def play_command(
@@ -56,39 +53,28 @@ def play_command(
         raise usage("names the icons itself; leave out --icon", "--order")
     if check and (folder is not None or order is not None):
         raise usage("plays nothing; leave out -o and --order", "--check")
-    from thermicon.circuit.live.demanded import statements_of
-    from thermicon.circuit.live.play_live import USUAL_PAUSE_S, SimulatedTime, check_play_folder, play_ready
-    from thermicon.circuit.live.ready import ReadySet
+    from thermicon.circuit.delivery.export_folder import check_export_folder
+    from thermicon.circuit.live.play_live import NEVER_REPLACED, play_export
     from thermicon.circuit.play.watch import Refused
     from thermicon.circuit.safety.playmap import UnjudgedError
 
-    statements_of(stated or [])
     if folder is not None:
-        check_play_folder(folder)
+        check_export_folder(folder, how=NEVER_REPLACED)
+    slow = is_watched()
     try:
-        with progress_bar("simulating", "judging all together") as progress:
-            made, names = exported(file, rig, icon, order, pause, progress)
+        made, names = exported(file, rig, icon, order, pause)
         if refused(made):
             note(CAUTION)
             raise Refused("nothing was put out")
-        ready = ReadySet.of(made)
-        if ready.amber and not amber:
-            raise Refused(f"the gate says amber: {ready.amber[0]}; --amber plays it")
-        now, slow = SimulatedTime(), is_watched()
-        clock, sleep = (time.monotonic, time.sleep) if slow else (now, now.sleep)
         with stop_key() as pressed:
-            result = play_ready(
-                ready, names, clock, sleep, USUAL_PAUSE_S if pause is None else pause, stated or [], folder,
-                why_stop=pressed, tell=(lambda text: note(f"{text} …")) if slow else lambda text: None,
-                checks_only=check,
+            result = play_export(
+                made, names, pause_s=pause, amber=amber, stated=stated or [], folder=folder, real_time=slow,
+                why_stop=pressed, tell=lambda text: note(f"{text} …") if slow else None, checks_only=check,
             )  # fmt: skip
     except (Refused, UnjudgedError) as problem:
         note(f"refused: {problem}", always=True)
         raise typer.Exit(REFUSED) from None
-    if check:
-        show(check_report(result))
-    else:
-        show(play_report(result, {name: drive.trace for name, drive in ready.drives.items()}))
+    show(check_report(result) if check else play_report(result))
     note("take the hand off: without power the display drifts by itself")
     if result.stopped:
         note(f"stopped: {result.stopped}; the output is off", always=True)
@@ -96,9 +82,8 @@ def play_command(
 
 
 def exported(
-    file: str, asked: RigOptions, icon: list[str] | None, order: Path | None, pause_s: float | None,
-    progress: Progress | None,
-) -> tuple[Export, list[str]]:  # fmt: skip
+    file: str, rig: RigOptions, icon: list[str] | None, order: Path | None, pause_s: float | None
+) -> tuple[Export, list[str]]:
     """The export of a set, or of a folder that was exported before, and the names to play in order."""
     from thermicon.circuit import Device
     from thermicon.circuit.live.ready import CONTROLLER, exported_before, judged
@@ -106,15 +91,19 @@ def exported(
     from thermicon.icons import IconSet
     from thermicon.icons.files.shipped import library_names
 
-    made = None
-    if Path(file).is_dir() and file not in library_names():
-        made = exported_before(Path(file), asked.load() if asked.given else None, pause_s, progress)
-    icons = read_set([file]) if made is None else IconSet.of([each.delivery.icon for each in made.prepared])
-    names = list(read_order(order, icons)) if order else icon or [each.name for each in pick(icons, None)]
-    chosen = [icons[name] for name in dict.fromkeys(names)]
-    if made is not None:
-        return made, names
-    where = asked.load(icons, file)
-    if asked.rig is None and where.name == DEFAULT_RIG:
-        note(f"on the {where.name} rig; --rig names another")
-    return judged(chosen, where, Device.load(CONTROLLER), pause_s, progress), names
+    is_folder = Path(file).is_dir() and file not in library_names()
+    with progress_bar("simulating", "judging all together") as progress:
+        if is_folder:
+            verify_folder(Path(file))
+            made = exported_before(Path(file), rig.load() if rig.given else None, pause_s, progress)
+            icons = IconSet.of([each.delivery.icon for each in made.prepared])
+        else:
+            icons = read_set([file])
+        names = list(read_order(order, icons)) if order else icon or [each.name for each in pick(icons, None)]
+        if not is_folder:
+            where = rig.load(icons, file)
+            if rig.rig is None and where.name == DEFAULT_RIG:
+                note(f"on the {where.name} rig; --rig names another")
+            chosen = [icons[name] for name in dict.fromkeys(names)]
+            made = judged(chosen, where, Device.load(CONTROLLER), pause_s, progress)
+    return made, names

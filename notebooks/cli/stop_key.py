@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import select
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -24,8 +26,6 @@ def stop_key() -> Iterator[Callable[[], str]]:
 
         yield lambda: meant(msvcrt.getwch() if msvcrt.kbhit() else "")
     else:
-        import os
-        import select
         import termios
         import tty
 
@@ -33,11 +33,13 @@ def stop_key() -> Iterator[Callable[[], str]]:
         before = termios.tcgetattr(keyboard)
         try:
             tty.setcbreak(keyboard)
-            yield lambda: meant(
-                os.read(keyboard, 64).decode("utf-8", "replace") if select.select([keyboard], [], [], 0.0)[0] else ""
-            )
+            yield lambda: meant(os.read(keyboard, 64).decode("utf-8", "replace") if _is_typed(keyboard) else "")
         finally:
             termios.tcsetattr(keyboard, termios.TCSADRAIN, before)
+
+
+def _is_typed(keyboard: int) -> bool:
+    return bool(select.select([keyboard], [], [], 0.0)[0])
 
 
 def meant(typed: str) -> str:

@@ -1,16 +1,16 @@
 """A faulty temperature controller on the independent circuit in simulated time.
 
-Rules: a thermistor follows its plate through glue with a lag, and has an offset and a step; a wire that breaks reads
-the end of the span; a loop turns every 10 ms and holds its current meanwhile; a watchdog counts from the last feed and
-nothing else feeds it; a relay cuts all power, also that of a driver that is stuck; after a loss of supply a controller
-is off. A hand that is not there is a contact that lets ten thousand times less heat through.
+Rules: a thermistor follows its plate with a lag, and has an offset and a step; a wire that breaks reads the end of the
+span; a loop turns every 10 ms and holds its current meanwhile; a watchdog counts from the last feed and nothing else
+feeds it; a relay cuts all power, also that of a driver that is stuck; after a loss of supply a controller is off. A
+hand that is not there is a contact that lets ten thousand times less heat through.
 """
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,12 +18,12 @@ import numpy as np
 
 from tests.circuit.delivery.independent import Circuit, worlds_of
 from tests.circuit.delivery.lanes import RATE, Lanes
-from thermicon.circuit import Rig
+from thermicon.circuit import Export
+from thermicon.circuit.delivery.delivered_drive import ModuleDrive
 from thermicon.circuit.live.live_player import LivePlayer, play_in_order
 from thermicon.circuit.live.logged_line import LineRow
 from thermicon.circuit.live.play_live import live_numbers
 from thermicon.circuit.live.play_log import MeasuredPlay, PlayLog
-from thermicon.circuit.live.ready import ReadyDrive, ReadySet
 from thermicon.circuit.safety.demands import Demands
 
 TURN_S = 0.01
@@ -33,16 +33,25 @@ FAULTS = (
 )
 
 
+def drives_of(made: Export) -> dict[str, ModuleDrive]:
+    found = [each.delivery for each in made.prepared if isinstance(each.delivery, ModuleDrive)]
+    return {each.icon.name: each for each in found}
+
+
+def demands_of(made: Export) -> Demands:
+    return Demands.strictest([each.verdict.demands for each in made.prepared])
+
+
 @dataclass
 class Thermistor:
     """A sensor of a display."""
 
+    felt_C: float
     lag_s: float = 0.1
     off_K: float = 0.0
     step_K: float = 0.0
     fault: str = ""
     lie_K: float = 3.0
-    felt_C: float = 0.0
     reads_C: float = 0.0
 
     def follow(self, display_C: float, noise_K: float) -> None:
@@ -58,20 +67,15 @@ class Thermistor:
 class Thermostat:
     """The device, which is its own clock; `at` lets something happen at a time in s."""
 
-    def __init__(self, rig: Rig, demands: Demands, rng: np.random.Generator, world: int | None = None) -> None:
-        document = json.loads(rig.document)
+    def __init__(self, made: Export, rng: np.random.Generator, world: int | None = None) -> None:
+        document = json.loads(made.rig.document)
         worlds = worlds_of(document, rng, 1)
         chosen = worlds[int(rng.integers(len(worlds))) if world is None else world]
-        bare = {**chosen, "contact_resistance_relative": 1e4}
-        self.circuit = Circuit.of(document, [chosen, bare])
-        self.lanes, self.rng, self.demands = Lanes.of(self.circuit), rng, demands
-        self.nodes = self.circuit.capacity.shape[1]
+        self.circuit = Circuit.of(document, [chosen, {**chosen, "contact_resistance_relative": 1e4}])
+        self.lanes, self.rng, self.demands = Lanes.of(self.circuit), rng, demands_of(made)
         self.state = self.lanes.steady(np.zeros(2), np.zeros(2))[:1].copy()
         self.world = np.zeros(1, dtype=np.int64)
-        self.loop, self.second = Thermistor(), Thermistor()
-        for sensor in (self.loop, self.second):
-            sensor.felt_C = sensor.reads_C = self.display_C
-        self.gain = float(self.circuit.gain[0])
+        self.loop, self.second = Thermistor(self.display_C), Thermistor(self.display_C)
         self.sign, self.stuck_A = 1.0, math.nan
         self.now_s = self.fed_s = 0.0
         self.turns = 0
@@ -81,16 +85,19 @@ class Thermostat:
         self.why = ""
         self.has_power, self.hangs_s = True, 0.0
         self.off_at_s = math.inf
-        self.far = np.array([np.inf, -np.inf] * 4)
-        self.rate = 0.0
+        self.far, self.rate = np.array([np.inf, -np.inf] * 4), 0.0
         self.reported: list[LineRow] = []
         self.skin_C: list[tuple[float, float]] = []
         self.events: list[tuple[float, Callable[[], None]]] = []
-        self.kp, self.ki, _ = demands.loop.played if demands.loop else (0.0, 0.0, 0.0)
+        self.kp, self.ki, _ = self.demands.loop.played if self.demands.loop else (0.0, 0.0, 0.0)
 
     @property
     def display_C(self) -> float:
         return float(self.state[0, 1])
+
+    @property
+    def is_on(self) -> bool:
+        return self.goal_C is not None or self.test_A is not None
 
     def at(self, time_s: float, happens: Callable[[], None]) -> None:
         self.events.append((time_s, happens))
@@ -115,14 +122,13 @@ class Thermostat:
             event[1]()
         for sensor in (self.loop, self.second):
             sensor.follow(self.display_C, float(self.rng.normal(0.0, 1e-3)))
-        is_on = self.goal_C is not None or self.test_A is not None
         cut, held = self.demands.cut_off_display_C, self.demands.held_cut_off_display_C
         second_C = self.second.reads_C
         self.beyond_s += TURN_S
         if held is None or self.current_A == 0.0 or held.low <= second_C <= held.high:
             self.beyond_s = 0.0
         trips = (
-            ("the host was silent", is_on and self.now_s - self.fed_s > 1.0),
+            ("the host was silent", self.is_on and self.now_s - self.fed_s > 1.0),
             ("cut-off", not cut.low <= second_C <= cut.high),
             ("second cut-off", held is not None and self.beyond_s > held.longer_than_s),
             ("no supply", not self.has_power),
@@ -137,14 +143,12 @@ class Thermostat:
             wanted_A = self.kp * error_K + grown_A
             self.sum_A = grown_A if low_A <= wanted_A <= high_A else self.sum_A
         self.current_A = min(max(wanted_A, low_A), high_A)
-        if not math.isnan(self.stuck_A) and (self.goal_C is not None or self.test_A is not None):
+        if not math.isnan(self.stuck_A) and self.is_on:
             self.current_A = self.stuck_A
-        self.skin_C.append(
-            (self.now_s, float(self.circuit.read(self.state[:, : self.nodes, None])[self.world[0], 0, 0]))
-        )
-        row = LineRow(self.now_s, self.goal_C, self.loop.reads_C, second_C, self.current_A, None)
-        self.reported.append(row)
-        flow_A = self.sign * self.gain * self.current_A
+        skin = self.circuit.read(self.state[:, : self.circuit.capacity.shape[1], None])[self.world[0], 0, 0]
+        self.skin_C.append((self.now_s, float(skin)))
+        self.reported.append(LineRow(self.now_s, self.goal_C, self.loop.reads_C, second_C, self.current_A, None))
+        flow_A = self.sign * float(self.circuit.gain[0]) * self.current_A
         went = self.lanes.hold(self.state, self.world, np.array([[flow_A, flow_A**2]]), TURN_S)[0]
         if not self.world[0]:
             self.far[0::2] = np.minimum(self.far[0::2], went[0:8:2])
@@ -152,9 +156,7 @@ class Thermostat:
             self.rate = max(self.rate, float(went[RATE]))
 
     def cut(self, why: str) -> None:
-        if self.goal_C is not None or self.test_A is not None:
-            self.off_at_s = self.now_s
-        self.goal_C = self.test_A = None
+        self.off()
         self.why = self.why or why
 
     def break_by(self, fault: str, lie_K: float, stuck_A: float) -> None:
@@ -168,19 +170,13 @@ class Thermostat:
         elif fault == "stuck":
             self.stuck_A = stuck_A
         elif fault == "power lost":
-            self.lose_power(1.0)
+            self.has_power = False
+            self.at(self.now_s + 1.0, lambda: setattr(self, "has_power", True))
         else:
             self.swap()
 
-    def land(self) -> None:
-        self.world[0] = 0
-
-    def lift(self) -> None:
-        self.world[0] = 1
-
-    def lose_power(self, seconds: float) -> None:
-        self.has_power = False
-        self.at(self.now_s + seconds, lambda: setattr(self, "has_power", True))
+    def touch(self, has_hand: bool) -> None:
+        self.world[0] = 0 if has_hand else 1
 
     def swap(self) -> None:
         self.sign = -self.sign
@@ -196,7 +192,7 @@ class Thermostat:
         return True
 
     def _put(self, goal_C: float | None, test_A: float | None) -> None:
-        if self.goal_C is None and self.test_A is None:
+        if not self.is_on:
             self.fed_s, self.sum_A = self.now_s, 0.0
         if not self.why:
             self.goal_C, self.test_A, self.off_at_s = goal_C, test_A, math.inf
@@ -205,7 +201,7 @@ class Thermostat:
         self.fed_s = self.now_s
 
     def off(self) -> None:
-        if self.goal_C is not None or self.test_A is not None:
+        if self.is_on:
             self.off_at_s = self.now_s
         self.goal_C = self.test_A = None
 
@@ -229,10 +225,11 @@ class Thermostat:
 
 
 def played(
-    device: Thermostat, ready: ReadySet, drives: list[ReadyDrive], rest_s: float | None = None, pause_s: float = 10.0
-) -> tuple[LivePlayer, tuple[MeasuredPlay, ...], str]:
-    """Play drives on a device; `rest_s` in place of the rest that is demanded."""
-    numbers = live_numbers(ready.demands, True)
+    device: Thermostat, made: Export, names: Sequence[str], rest_s: float | None = None, pause_s: float = 10.0
+) -> tuple[tuple[MeasuredPlay, ...], str]:
+    """Play icons on a device; `rest_s` in place of the rest that is demanded."""
+    numbers = live_numbers(demands_of(made), True)
     numbers = numbers if rest_s is None else numbers._replace(rest_s=rest_s)
-    player = LivePlayer(device, numbers, PlayLog(None, {}), device.clock, device.sleep)
-    return player, *play_in_order(player, drives, pause_s, dict)
+    player = LivePlayer(device, numbers, PlayLog(None), device.clock, device.sleep)
+    why = play_in_order(player, [drives_of(made)[name] for name in names], pause_s)
+    return player.log.finish({}), why

@@ -26,22 +26,32 @@ def test_a_play_can_be_compared_as_it_says(cli: Cli, two: Path, tmp_path: Path) 
     order = tmp_path / "order.txt"
     order.write_text("warm-step\nwarm-step\n")
     again = cli.good("play", drives, "--order", order, "--pause", 5, "-o", tmp_path / "tuesday")
-    assert "warm-step-2.log.csv" in again.stdout
+    assert "warm-step.2.log.csv" in again.stdout
 
 
 def test_a_check_says_how_each_demand_is_met(cli: Cli, two: Path) -> None:
-    said = cli.good("play", two, "--check")
+    lines = [line.split() for line in cli.good("play", two, "--check").stdout.splitlines()]
     for label, how in (("watchdog", "proven"), ("polarity", "proven"), ("loop", "held"), ("rest", "held")):
-        assert any(line.split()[:1] == [label] and how in line.split() for line in said.stdout.splitlines()), label
+        assert any(line[:1] == [label] and how in line for line in lines), label
 
 
 def test_a_key_stops_with_exit_code_4(cli: Cli, two: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     keys = iter(["", "", "x", " "])
     monkeypatch.setattr(play, "stop_key", lambda: nullcontext(lambda: stop_key.meant(next(keys, ""))))
-    said = cli("play", two, "-o", tmp_path / "out")
-    assert said.exit_code == 4
-    assert "stopped: Space was pressed; the output is off" in said.stderr
+    answer = cli("play", two, "-o", tmp_path / "out")
+    assert answer.exit_code == 4
+    assert "stopped: Space was pressed; the output is off" in answer.stderr
     assert (tmp_path / "out" / "cool-step.log.json").exists()
+
+
+def test_a_changed_drive_is_not_played(cli: Cli, two: Path, tmp_path: Path) -> None:
+    cli.good("export", two, "--device", "closed-loop-controller", "--to", "setpoint-csv", "-o", tmp_path / "drives")
+    drive = next((tmp_path / "drives").glob("*-step.csv"))
+    drive.write_text(drive.read_text().replace("32.", "33.", 1))
+    answer = cli("play", tmp_path / "drives", "-o", tmp_path / "out")
+    assert answer.exit_code == 1
+    assert "digest differs" in answer.stderr
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize(
