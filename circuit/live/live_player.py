@@ -37,96 +37,75 @@ class LivePlayer:
         why_stop: Callable[[], str] = str,
         tell: Callable[[str], None] = lambda text: None,
     ) -> None:
-        self.line, self.numbers, self.log = line, numbers, log
-        self.guard = Guard(lambda: numbers, clock, sleep)
+        self.line, self.log = line, log
+        self.guard = Guard(lambda: numbers, clock, self._pass)
+        self.pause_s = numbers.pause_s
         self.proofs: dict[str, float] = {}
         self.worst_gap_s = 0.0
         self._clock, self._sleep, self._why_stop, self._tell = clock, sleep, why_stop, tell
+        self._sensors = line.read, line.read_second
         self._ticked_s = clock()
 
     def prepare(self, rest_C: float) -> None:
         """Prove that the device switches off by itself, test the polarity, and rest; raises Refused or Stopped."""
         self.line.open()
         self._mark("output off")
-        self._wait(OFF_BEFORE_S)
+        self._pass(OFF_BEFORE_S)
         self._mark("silence")
         self.line.test(0.0)
-        self._wait(SILENT_S)
+        self._pass(SILENT_S)
         stopped = str(self.line.status()["stopped"])
-        if stopped and "silent" not in stopped:
-            raise Refused(f"the device switched off by itself: {stopped}")
-        if not stopped:
-            raise Refused(f"the device did not switch off after {SILENT_S:g} s of silence: set its watchdog to 1 s")
-        self.line.open()
+        if "silent" not in stopped:
+            what = f"switched off by itself: {stopped}" if stopped else "did not switch off; set its watchdog to 1 s"
+            raise Refused(f"after {SILENT_S:g} s of silence the device {what}")
         self.proofs["silent_s"] = SILENT_S
         begun_s = self._clock()
         self._mark("polarity test and rest")
-        self.guard.begin_rest(self.line, rest_C, self._sensors)
         try:
-            self._run()
+            self.guard.rest(self.line, rest_C, self._sensors)
         finally:
             if self.guard.fell_K:
                 self.proofs["fell_K"] = min(self.guard.fell_K.values())
         self.proofs["rest_s"] = self._clock() - begun_s
 
-    def play(self, delivery: ModuleDrive, pause_s: float = 0.0) -> None:
-        """Play a drive, after a pause at least since the last one; raises Refused or Stopped."""
-        until_s = self.guard.ended_s + max(pause_s, self.numbers.pause_s) + 2.0 * NOTHING_S
-        while until_s - self._clock() > NOTHING_S:
+    def play(self, delivery: ModuleDrive, pause_s: float) -> None:
+        """Play a drive, after a pause since the last one; raises Refused or Stopped."""
+        while self._clock() < self.guard.ended_s + pause_s + NOTHING_S:
             self.guard.keep()
-            self.guard.wait(min(until_s, self._clock() + TICK_S))
-            self._tick()
+            self._pass(TICK_S)
         self._tell(f"plays {delivery.icon.name}")
         rows = list(zip(delivery.played.time_s.tolist(), delivery.played.command.tolist(), strict=True))
         course = [(k * COURSE_EVERY_S, at_C) for k, at_C in enumerate(course_C(delivery, COURSE_EVERY_S).tolist())]
         self.guard.began_s = math.inf
-        self.guard.begin_play(self.line, rows, rows[0][1], course, self._sensors)
         try:
-            self._run()
+            self.guard.play(self.line, rows, rows[0][1], course, self._sensors)
         finally:
             self.log.began(self.guard.began_s)
-        self._wait(TICK_S)
+        self._pass(TICK_S)
 
     def off(self) -> None:
         """Switch off, and log what that did."""
-        if self.guard.busy:
-            self.guard.abort()
         self.line.off()
         self._mark("output off")
         self._sleep(2.0 * TICK_S)
         self.log.take(self.line.rows(), self._clock())
 
-    @property
-    def _sensors(self) -> tuple[Callable[[], float], Callable[[], float]]:
-        return self.line.read, self.line.read_second
-
     def _mark(self, text: str) -> None:
         self.log.mark(text)
         self._tell(text)
 
-    def _run(self) -> None:
-        """Take the guard's steps until its plan has ended."""
-        next_s = self.guard.step(self._clock())
-        while self.guard.busy:
-            self.guard.wait(min(next_s, self._clock() + TICK_S))
-            self._tick()
-            next_s = self.guard.step(self._clock())
-
-    def _wait(self, seconds: float) -> None:
-        """Let time pass without a sign of life."""
+    def _pass(self, seconds: float) -> None:
+        """Let time pass, log what the device reports meanwhile, and stop where somebody wants that."""
         until_s = self._clock() + seconds
         while until_s - self._clock() > NOTHING_S:
             self._sleep(min(until_s - self._clock(), TICK_S))
-            self._tick()
-
-    def _tick(self) -> None:
-        now_s = self._clock()
-        self.worst_gap_s = max(self.worst_gap_s, now_s - self._ticked_s)
-        self._ticked_s = now_s
-        self.log.take(self.line.rows(), now_s)
-        why = self._why_stop()
-        if why:
-            raise Stopped(why)
+            now_s = self._clock()
+            self.worst_gap_s = max(self.worst_gap_s, now_s - self._ticked_s)
+            self._ticked_s = now_s
+            self.log.take(self.line.rows(), now_s)
+            why = self._why_stop()
+            if why:
+                raise Stopped(why)
 
 
 def play_in_order(player: LivePlayer, drives: Sequence[ModuleDrive], pause_s: float, *, plays: bool = True) -> str:
@@ -140,7 +119,7 @@ def play_in_order(player: LivePlayer, drives: Sequence[ModuleDrive], pause_s: fl
             if number == 0:
                 player.prepare(float(delivery.played.command[0]))
             if plays:
-                player.play(delivery, pause_s)
+                player.play(delivery, max(pause_s, player.pause_s))
     except (Stopped, KeyboardInterrupt) as problem:
         return str(problem) or "Ctrl-C"  # what interrupts has no text
     finally:

@@ -112,7 +112,7 @@ class Steps:
         try:
             next_s = self.step(float(self._clock()))
             while self.busy:
-                self.wait(next_s)
+                self._wait(next_s)
                 next_s = self.step(float(self._clock()))
         except BaseException as problem:
             if self.busy:  # an interrupt while it waited
@@ -123,7 +123,7 @@ class Steps:
             self._fail(stopped)
             raise stopped
 
-    def wait(self, until_s: float) -> None:
+    def _wait(self, until_s: float) -> None:
         """Wait until a time in s, or until the sensors have answered; a clock that stands still meanwhile stops."""
         look, now_s = self._look, float(self._clock())
         if look is not None and until_s > now_s and look.done.wait(until_s - now_s):
