@@ -85,7 +85,7 @@
 #define THERMICON_LAG_S 0.3f
 /* What a loop's own sensor reads in a play is no farther from the predicted course for longer. */
 #define THERMICON_OFF_COURSE_K 1.5f
-#define THERMICON_OFF_COURSE_S 0.4f
+#define THERMICON_OFF_COURSE_S 1.0f
 /* A clock that reads the same in so many steps stands still. */
 #ifndef THERMICON_CLOCK_STEPS
 #define THERMICON_CLOCK_STEPS 100

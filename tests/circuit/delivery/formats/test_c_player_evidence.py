@@ -127,7 +127,7 @@ STOPS: dict[str, tuple[str, str]] = {
         f"{name} {new}": (f"#define THERMICON_{name} {old}f", f"#define THERMICON_{name} {new}f")
         for name, old, others in (
             ("APART_K", 1.0, (0.85, 1.15)), ("APART_S", 0.3, (0.2, 0.4)),
-            ("OFF_COURSE_K", 1.5, (1.35, 1.65)), ("OFF_COURSE_S", 0.4, (0.34, 0.46)),
+            ("OFF_COURSE_K", 1.5, (1.35, 1.65)), ("OFF_COURSE_S", 1.0, (0.85, 1.15)),
             ("SENSOR_STEP_K", 0.1, (0.075, 0.125)), ("FROZEN_S", 1.0, (0.85, 1.15)),
         ) for new in others
     },
