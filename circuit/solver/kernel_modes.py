@@ -98,13 +98,45 @@ def ramp_responses(count, cap, g, perf, period_s, places, weights, response):
 
 
 @compiled
-def superpose(lanes, rig_of, cue_of, corner_at, corner_K, response, begin, row_at, out, flow):
-    """Fill `out` (readings, lane, rows) of lanes at the ends `row_at` (rows,) of periods, `flow` (lane, periods + 1).
+def playable(display, flow, hot, p, period_s):
+    """Whether driver and module produce a display (periods + 1,) in °C, with a margin.
+
+    The cold plate's balance gives the current of each period from the heat `flow` (periods + 1,) out of the skin,
+
+        αI·T_c − I²R/2 = flow − C_c·dT_c/dt + (T_h − T_c)/Θ,
+
+    and the hot plate, which begins at `hot` in °C, follows by implicit steps.
+    """
+    alpha, ohm, leak, out = p[net.ALPHA], p[net.RESISTANCE], p[net.CONDUCTANCE], p[net.SINK_W_PER_K]
+    hot_store, cold_store = p[net.HOT_J_PER_K] / period_s, p[net.COLD_J_PER_K] / period_s
+    for k in range(1, display.size):
+        cold = display[k]
+        taken = flow[k] - cold_store * (cold - display[k - 1])
+        half = alpha * (cold + ZERO_C_IN_K)
+        root = half * half - 2.0 * ohm * (taken + leak * (hot - cold))
+        if root <= 0.0:
+            return False
+        amperes = (half - math.sqrt(root)) / ohm
+        spare = MARGIN_A + MARGIN * abs(amperes)
+        _, above = limited(amperes + spare, hot, cold, p[net.SINK_C], p)
+        _, below = limited(amperes - spare, hot, cold, p[net.SINK_C], p)
+        if above != FREE or below != FREE:
+            return False
+        warm = hot_store * hot + out * p[net.SINK_C] + leak * cold + alpha * amperes * ZERO_C_IN_K
+        hot = (warm + 0.5 * ohm * amperes * amperes) / (hot_store + out + leak - alpha * amperes)
+    return True
+
+
+@compiled
+def superpose(
+    lanes, rig_of, cue_of, corner_at, corner_K, response, begin, row_at, display, hot_C, plates, period_s, out, fine
+):
+    """Fill `out` (readings, lane, rows) at the ends `row_at` (rows,) of periods, and `fine` (lane,), see `playable`.
 
     `corner_at` and `corner_K` (cue, corners) are the periods at which the slope changes (−1: no more corners), and its
-    change in K per period; `begin` (lane, readings + 1) is what is read at the start.
+    change in K per period; `begin` (lane, readings + 1) is what is read at the start, and then the heat flow.
     """
-    readings, periods = out.shape[0], flow.shape[1]
+    readings, periods = out.shape[0], display.shape[1]
     course = np.empty(periods)
     for lane in lanes:
         r, c = rig_of[lane], cue_of[lane]
@@ -118,44 +150,7 @@ def superpose(lanes, rig_of, cue_of, corner_at, corner_K, response, begin, row_a
                     break
                 for k in range(first, periods):
                     course[k] += slope * unit[k - first]
-            if q == readings:
-                for k in range(periods):
-                    flow[lane, k] = course[k]
-            else:
+            if q < readings:
                 for k in range(row_at.size):
                     out[q, lane, k] = course[row_at[k]]
-
-
-@compiled
-def playable(lanes, rig_of, cue_of, display, flow, hot_C, plates, period_s, fine):
-    """Fill `fine` (lane,): whether driver and module produce a display (cue, periods + 1) in °C, with a margin.
-
-    The cold plate's balance gives the current of each period from the heat `flow` (lane, periods + 1) out of the skin,
-
-        αI·T_c − I²R/2 = flow − C_c·dT_c/dt + (T_h − T_c)/Θ,
-
-    and the hot plate, from `hot_C` (lane,) on, follows by implicit steps.
-    """
-    for lane in lanes:
-        p, c = plates[rig_of[lane]], cue_of[lane]
-        alpha, ohm, leak, out = p[net.ALPHA], p[net.RESISTANCE], p[net.CONDUCTANCE], p[net.SINK_W_PER_K]
-        hot_store, cold_store = p[net.HOT_J_PER_K] / period_s, p[net.COLD_J_PER_K] / period_s
-        hot = hot_C[lane]
-        fine[lane] = True
-        for k in range(1, display.shape[1]):
-            cold = display[c, k]
-            taken = flow[lane, k] - cold_store * (cold - display[c, k - 1])
-            half = alpha * (cold + ZERO_C_IN_K)
-            root = half * half - 2.0 * ohm * (taken + leak * (hot - cold))
-            if root <= 0.0:
-                fine[lane] = False
-                break
-            amperes = (half - math.sqrt(root)) / ohm
-            spare = MARGIN_A + MARGIN * abs(amperes)
-            _, above = limited(amperes + spare, hot, cold, p[net.SINK_C], p)
-            _, below = limited(amperes - spare, hot, cold, p[net.SINK_C], p)
-            if above != FREE or below != FREE:
-                fine[lane] = False
-                break
-            warm = hot_store * hot + out * p[net.SINK_C] + leak * cold + alpha * amperes * ZERO_C_IN_K
-            hot = (warm + 0.5 * ohm * amperes * amperes) / (hot_store + out + leak - alpha * amperes)
+        fine[lane] = playable(display[c], course, hot_C[lane], plates[r], period_s)

@@ -85,12 +85,13 @@ def superposed(
     begin[:, :-1] = (weights[rig_of] * states[lane[:, np.newaxis, np.newaxis], near]).sum(axis=2)
     begin[:, -1] = skins.conductance[rig_of, 0] * (states[:, SKIN] - states[:, COLD])
     row_at = np.rint(rows_s / period_s).astype(np.int64)
-    out, flow = np.empty((len(which), len(lane), len(row_at))), np.empty((len(lane), display_C.shape[1]))
+    out = np.empty((len(which), len(lane), len(row_at)))
     fine, hot_C = np.empty(len(lane), dtype=np.bool_), np.ascontiguousarray(states[:, HOT])
 
     def add(part: Index) -> None:
-        kernel.superpose(part, rig_of, cue_of, *corners, response, begin, row_at, out, flow)
-        kernel.playable(part, rig_of, cue_of, display_C, flow, hot_C, bank.plates, period_s, fine)
+        kernel.superpose(
+            part, rig_of, cue_of, *corners, response, begin, row_at, display_C, hot_C, bank.plates, period_s, out, fine
+        )  # fmt: skip
 
     on_all_cores(add, lane)
     return out, fine
