@@ -16,3 +16,4 @@ from .delivery.device import Device as Device
 from .delivery.export import export as export, Export as Export
 from .delivery.netlist import netlist as netlist
 from .fitting.fit import fit as fit
+from .live.play_live import play_live as play_live

@@ -23,6 +23,7 @@ Progress = Callable[[int, int], None]
 
 BAD_INPUT = 1
 REFUSED = 3
+STOPPED = 4
 INTERRUPTED = 130
 _QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
 VERBOSE: ContextVar[bool] = ContextVar("verbose", default=False)

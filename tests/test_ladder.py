@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[1]
 LADDER = {
     "base": ("words", "checks", "files", "numbers", "results"),
     "icons": ("model", "language", "files", "recordings", "pictures"),
-    "circuit": ("rig", "solver", "safety", "play", "delivery", "fitting"),
+    "circuit": ("rig", "solver", "safety", "play", "delivery", "fitting", "live"),
     "perception": (
         *("kernels", "observer", "sensation", "experiments", "identification"),
         *("ranking", "selection", "pilot", "evidence", "plots"),

@@ -25,7 +25,7 @@ DIP, OTHER, GLOW = PAIR
 FIRST, LAST, FEW = "dip_depth=4", "dip_depth=6", {"people": 4, "parameters": 0}
 THENAR = Rig.load("thenar")
 BY_IDENTITY = (
-    *("Batch", "Design", "Drive", "Export", "RigFit", "Session", "Trace", "InputError"),
+    *("Batch", "Design", "Drive", "Export", "RigFit", "LiveResult", "Session", "Trace", "InputError"),
     *("Percept", "Ranking", "Choice", "Confusion", "People", "Trials", "Measurements", "Observed"),
 )
 """Results of which a copy is another one: they hold arrays, or are raised."""
@@ -67,6 +67,7 @@ RESULTS: dict[str, Callable[[], Any]] = {
     "play_session": lambda: circuit.play_session(PAIR, circuit.SessionPlan((FIRST, "glow")), THENAR),
     "export": lambda: circuit.export([GLOW], sure_rig(), "dac-16", "csv"),
     "fit": fitted,
+    "play_live": lambda: circuit.play_live(GLOW, sure_rig()),
     "InputError": lambda: circuit.InputError("nothing"),
     "Observer": perception.Observer.load,
     "draw_people": lambda: perception.draw_people(3),

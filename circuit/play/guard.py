@@ -22,6 +22,7 @@ class Guard(Steps):
     `begin_rest` and `begin_play` say what is to happen in the steps that follow; `rest` and `play` are loops of steps.
     `numbers` is asked at each use, so that they may be changed. What stopped refuses everything until `reset`. Sensors
     are functions that return the °C of the display; cut-offs act on both. One that was given is read until `reset`.
+    `began_s` and `ended_s` are of the last play, `fell_K` has the fall of each sensor in the polarity test.
     """
 
     def reset(self) -> None:
@@ -131,6 +132,7 @@ class Guard(Steps):
         after_C = yield from self._seen()
         for name, level_C in before_C.items():
             fell_K = level_C - after_C.get(name, math.nan)
+            self.fell_K[name] = fell_K
             if not fell_K >= numbers.test_fall_K:
                 raise Stopped(
                     f"the display fell by {fell_K:.2f} K at the {name}, not by {numbers.test_fall_K:g} K, under "
@@ -143,7 +145,8 @@ class Guard(Steps):
         if not self.rested:
             yield from self._resting(rest_row)
         yield from self._seen()
-        begin_s, playing = self._now_s, None
+        self.began_s = begin_s = self._now_s
+        playing = None
         if not watch:
             self._send(rows[0][1])
             self.ended_s = begin_s + rows[-1][0]

@@ -46,6 +46,8 @@ class Steps:
 
     def _forget(self) -> None:
         self.rested, self.ended_s = False, -math.inf
+        self.began_s = math.inf
+        self.fell_K: dict[str, float] = {}
         self._held_s: float | None = None
         self._now_s, self._stood_s, self._due_s = -math.inf, 0.0, -math.inf
         self._fed_s = -math.inf

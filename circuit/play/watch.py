@@ -10,8 +10,8 @@ from typing import NamedTuple
 SENSOR_LOWEST_C, SENSOR_HIGHEST_C = -20.0, 120.0  # a thermistor that is open or shorted reads far outside these
 FROZEN_STEPS = 3.0
 LATER_S = 0.5  # a sensor that is late by 0.3 s still moves so long after the other one has come to stay
-APART_K, APART_S = 1.0, 0.3  # two sensors of one display, of which one may be late by so much
-BESIDE_K, BESIDE_S = 1.5, 1.0  # a loop's display and its prediction; healthy ones come to 0.89 K for a second
+APART_K, APART_S, LAG_S = 1.0, 0.3, 0.3  # two sensors of one display, of which the second may be late
+BESIDE_K, BESIDE_S = 1.5, 1.0  # a loop's own sensor and its prediction; the weakest healthy corner comes to 1.35 K
 UNSUPERVISED_S = 1.0  # between two looks where no cut-off is quick enough
 COARSE_S = 0.016  # a tick of a coarse clock, by two of which no time is known better
 SLOWEST_PART = 0.8  # of the time to react, for a reading
@@ -70,7 +70,7 @@ class Watch:
     def forget(self) -> None:
         """Begin as before a first play."""
         self._since: dict[str, float] = {}
-        self._recent: list[tuple[float, Mapping[str, float]]] = []
+        self._late = (math.nan, math.nan)
         self.expect()
 
     def expect(self, points: Sequence[tuple[float, float]] = (), begin_s: float = 0.0) -> None:
@@ -116,33 +116,34 @@ class Watch:
             )
 
     def _check_apart(self, levels_C: Mapping[str, float], now_s: float) -> None:
-        """Two sensors of one display, by all their readings of a time, in which a late one comes after the other."""
-        self._recent.append((now_s, levels_C))
-        while len(self._recent) > 1 and self._recent[1][0] <= now_s - APART_S:
-            self._recent.pop(0)
-        if len(levels_C) < 2 or self._recent[0][0] > now_s - APART_S:
+        """A second sensor that is late reads between the first one and a level that follows it as slowly."""
+        if len(levels_C) < 2:
             return
-        first, second = ([seen[name] for _, seen in self._recent if name in seen] for name in levels_C)
-        apart_K = max(min(first) - max(second), min(second) - max(first))
-        if apart_K > APART_K:
-            first_C, second_C = levels_C.values()
+        first_C, second_C = levels_C.values()
+        late_C, seen_s = self._late
+        late_C = first_C if math.isnan(late_C) else late_C
+        share = (now_s - seen_s) / (LAG_S + now_s - seen_s) if now_s > seen_s else 0.0
+        late_C += (first_C - late_C) * share
+        self._late = late_C, now_s
+        apart_K = max(min(first_C, late_C) - second_C, second_C - max(first_C, late_C))
+        if self._lasts("apart", apart_K > APART_K, now_s) >= APART_S - COARSE_S:
             raise Stopped(
                 f"the sensors are {apart_K:.2f} K apart for {APART_S:g} s, at {first_C:.2f} and {second_C:.2f} degrees "
                 f"C, more than {APART_K:g} K: one of them is wrong or has come off"
             )
 
     def _check_beside(self, levels_C: Mapping[str, float], asked_s: float, now_s: float) -> None:
-        """A loop holds its display at the prediction, which is exact enough to judge it by."""
-        if not self._points or not self._numbers().closed_loop:
+        """A loop holds its own sensor at the prediction, which is exact enough to judge it by."""
+        if not self._points or not self._numbers().closed_loop or not levels_C:
             return
         due_C = self._due_C(asked_s, now_s)
-        for name, now_C in levels_C.items():
-            beside_K = max(min(due_C) - now_C, now_C - max(due_C))
-            if self._lasts(f"{name} beside", beside_K > BESIDE_K, now_s) > BESIDE_S:
-                raise Stopped(
-                    f"the display is at {now_C:.2f} degrees C by the {name}, {beside_K:.2f} K from its prediction for "
-                    f"{BESIDE_S:g} s, more than {BESIDE_K:g} K: a wrong sensor, swapped wires, or another loop"
-                )
+        name, now_C = next(iter(levels_C.items()))
+        beside_K = max(min(due_C) - now_C, now_C - max(due_C))
+        if self._lasts("beside", beside_K > BESIDE_K, now_s) > BESIDE_S:
+            raise Stopped(
+                f"the display is at {now_C:.2f} degrees C by the {name}, {beside_K:.2f} K from its prediction for "
+                f"{BESIDE_S:g} s, more than {BESIDE_K:g} K: a wrong sensor, swapped wires, or another loop"
+            )
 
     def _check_frozen(self, levels_C: Mapping[str, float], now_s: float) -> None:
         """A reading that stays when the other sensor moves, or where that stays too or is not there, the prediction."""

@@ -142,8 +142,8 @@ class Rig:
         if name is not None:
             document = json.loads(self.document)
             restate(document, changed(self.changes))
-            saved = _build(document | {"name": name}, str(where))
-        if _build(parse_toml(saved.toml, str(where)), str(where)) != saved:
+            saved = rig_of(document | {"name": name}, str(where))
+        if rig_of(parse_toml(saved.toml, str(where)), str(where)) != saved:
             raise RigError(f"{where}: rig {self.name} cannot be read back unchanged; it was not saved")
         try:
             with complete_or_absent(where) as draft:
@@ -219,7 +219,7 @@ class Rig:
         put_all(document, changes)
         stated = {**changed(self.changes), **changes}
         texts = tuple(f"{key}={value}" for key, value in stated.items())
-        return replace(_build(document, f"rig {self.name}"), changes=texts)
+        return replace(rig_of(document, f"rig {self.name}"), changes=texts)
 
     @checked
     def with_set(self, settings: Iterable[str]) -> Rig:
@@ -239,10 +239,11 @@ def rig_names() -> tuple[str, ...]:
 
 @lru_cache(maxsize=64)
 def _read(text: str, where: str) -> Rig:
-    return _build(parse_toml(text, where), where)
+    return rig_of(parse_toml(text, where), where)
 
 
-def _build(document: Mapping[str, Any], where: str) -> Rig:
+def rig_of(document: Mapping[str, Any], where: str) -> Rig:
+    """The rig of a document, as its file has it; raises RigError with every fault, on `where`."""
     table = read_table(document, where)
     try:
         return _assemble(table, json.dumps(document, sort_keys=True, ensure_ascii=False))

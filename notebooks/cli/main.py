@@ -36,6 +36,7 @@ COMMANDS = {
     "pilot": ("pilot", PREDICT),
     "validate": ("validation", PREDICT),
     "export": ("export", PLAY),
+    "play": ("play", PLAY),
     "study": ("study", PLAY),
     "lab": ("lab", NOTEBOOKS),
     "doctor": ("doctor", INSTALLATION),

@@ -99,6 +99,13 @@ def _player(drives: Sequence[Played], demands: Demands) -> bytes:
     elif driven_by == "temperatures":  # a controller takes 0 V for a temperature, so that off is the rest
         on = "as set-points of a temperature controller on an NI analogue output"
         off_V = float(volts_of(device, samples_of(delivery).command[:1])[0])
+    numbers = guard_numbers(demands, closed_loop=driven_by != "volts")
+    V_per_A = command_for(delivery, 1.0) if driven_by == "volts" else 0.0
+    return script(kind, on, numbers, [_judged(each) for each in drives], off_V, V_per_A).encode("utf-8")
+
+
+def guard_numbers(demands: Demands, *, closed_loop: bool) -> Numbers:
+    """What a guard keeps to of the demands; `closed_loop`: the display is held at its prediction."""
     cut, held = demands.cut_off_display_C, demands.held_cut_off_display_C
     within_s = cut.react_within_s or UNSUPERVISED_S
     numbers = Numbers(
@@ -110,7 +117,7 @@ def _player(drives: Sequence[Played], demands: Demands) -> bytes:
         rest_s=demands.rest_s,
         pause_s=demands.pause_s,
         second_sensor=demands.loop is not None,
-        closed_loop=driven_by != "volts",
+        closed_loop=closed_loop,
     )
     if held is not None:
         numbers = numbers._replace(held_low_C=held.low, held_high_C=held.high, held_s=held.longer_than_s)
@@ -122,8 +129,7 @@ def _player(drives: Sequence[Played], demands: Demands) -> bytes:
             test_fall_K=demands.test.display_change_at_least_K,
             off_before_test_s=demands.test.off_before_s,
         )
-    V_per_A = command_for(delivery, 1.0) if driven_by == "volts" else 0.0
-    return script(kind, on, numbers, [_judged(each) for each in drives], off_V, V_per_A).encode("utf-8")
+    return numbers
 
 
 def _judged(played: Played) -> JudgedDrive:

@@ -26,7 +26,7 @@ def test_a_command_reads_its_own_options_alone() -> None:
     assert [command.name for command in program(["rank"]).registered_commands] == ["rank"]
     assert [command.name for command in program(["-q", "rank"]).registered_commands] == ["rank"]
     for words in ([], ["--help"], ["chek"], ["-q"]):
-        assert len(program(words).registered_commands) == len(COMMANDS) == 15
+        assert len(program(words).registered_commands) == len(COMMANDS) == 16
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -1,0 +1,1 @@
+"""thermicon.circuit.live: guarded play on a device that measures."""
