@@ -59,7 +59,7 @@ class DesignModel:
     @property
     def version(self) -> Version:
         """What is designed now, as it could be pinned."""
-        return Version(self.scene, self.nominal, self.values)
+        return Version(self.scene, self.nominal, self.values, self.document)
 
     @property
     def observer(self) -> Observer:
@@ -213,10 +213,10 @@ class DesignModel:
         return self.text
 
     def _swap(self) -> str | None:
-        """Change sides: what is pinned becomes the design, and the design what is pinned."""
+        """Change sides: what is pinned becomes the design, in its own document, and the design what is pinned."""
         if (other := self.pinned) is None or self.scene.stale:
             raise ValueError("nothing is pinned" if other is None else "a text with errors cannot be pinned")
-        self.pinned = self.version
+        self.pinned, self.document = self.version, other.document
         self.nominal, self.values = other.nominal, dict(other.values)
         self.rig, self._told = turned(self.nominal, self.values)
         self.document.history = self.document.history.changed(other.scene.text)

@@ -26,6 +26,21 @@ if TYPE_CHECKING:
 
 MOST_FILES, MOST_RIGS = 200, 50
 FIRST = "six-icons"
+LONGEST_NAME = 24
+NEW = """cue 1
+
+set untitled {{
+  site {site}
+  control display
+  baseline 32 °C
+}}
+
+icon first {{
+  cool by 3 °C at 1.5 °C/s
+  hold for 1 s
+  return at 1.5 °C/s
+}}
+"""
 SHIPPED = "shipped: "
 """What stands before the name of a shipped set in the list of what can be opened."""
 
@@ -42,7 +57,7 @@ class DocumentBar:
         self.buttons = {
             name: self._button(name, hint, act)
             for name, hint, act in (
-                ("Open", "a cue file or a shipped set", lambda: self._toggle("open")),
+                ("Open", "a cue file, a shipped set or a new one", lambda: self._toggle("open")),
                 ("Save", "to the file it came from (Ctrl+S)", self.save),
                 ("Save as", "under another name", lambda: self._toggle("save")),
                 ("Sliders", "contact, area, rest temperature and current limit of the rig", self.view.fold),
@@ -59,8 +74,10 @@ class DocumentBar:
         self.path = widgets.Text(placeholder="or its path", description="file", layout={"width": "250px"})
         for control in (self.files, self.path):
             control.style.description_width = "36px"
+        self.files.observe(lambda _: setattr(self.path, "value", ""), "value")  # what was chosen last is opened
         go = self._button("Open it", "open what is selected or typed", self._open_selected)
-        self._panels = {"open": widgets.VBox([self.files, widgets.Box([self.path, go])])}
+        new = self._button("New", "begin a set with one icon", self._new)
+        self._panels = {"open": widgets.VBox([self.files, widgets.Box([self.path, go, new])])}
         self.name = widgets.Text(placeholder="alerts.cue", description="file", layout={"width": "320px"})
         self.overwrite = widgets.Checkbox(value=False, description="overwrite", indent=False, layout={"width": "110px"})
         go = self._button("Save it", "write the file", self._save_as)
@@ -90,7 +107,10 @@ class DocumentBar:
         """Say anew what the document is, and what may cost somebody their text."""
         document, history = self.document, self.document.history
         kind = "th-caution" if document.dirty else ""
-        self.title.value = fragment("marked", document.title, f"thermicon-file {kind}".strip())
+        name, said = document.name, document.title.removeprefix(document.name)
+        short = name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME // 2]}…{name[-LONGEST_NAME // 2 :]}"
+        self.title.value = fragment("marked", short + said, f"thermicon-file {kind}".strip())
+        self.title.tooltip = document.title
         self.buttons["Undo"].disabled, self.buttons["Redo"].disabled = not history.past, not history.future
         self.buttons["Save"].disabled = not document.dirty and document.path is not None
         count = len(self.design.values)
@@ -179,11 +199,19 @@ class DocumentBar:
         source = self.path.value.strip() or self.files.value
         if not source:
             raise OutputError("select what is to be opened, or type its path")
-        self.document.leave()
         if source.startswith(SHIPPED):
-            self.design.open(document_of(source.removeprefix(SHIPPED), self.document.keeps))
+            self._show(lambda: document_of(source.removeprefix(SHIPPED), self.document.keeps))
         else:
-            self.design.open(Document.open(self.document.place(source), self.document.keeps))
+            self._show(lambda: Document.open(self.document.place(source), self.document.keeps))
+
+    def _new(self) -> None:
+        site = self.design.nominal.site
+        self._show(lambda: Document(NEW.format(site=site), "untitled", self.document.keeps))
+
+    def _show(self, document: Callable[[], Document]) -> None:
+        """Take another document, once what is unsaved of this one is kept."""
+        self.document.leave()
+        self.design.open(document())
         self.path.value = self.name.value = ""
         self._offer_rigs()
         self._after("")

@@ -10,6 +10,7 @@ from thermicon.base.words.number_text import percent
 from thermicon.circuit import Rig
 from thermicon.perception import Ranking
 
+from ..files.document import Document
 from ..timeline.frames import DRAGGED_POINTS, CanvasFrame, frame_of
 from ..timeline.scene import Scene
 from .set_model import WELL, SetRequest
@@ -20,11 +21,12 @@ BEHIND = {"temperature": ("skin",), "heat": ("skin",), "current": ("current",), 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Version:
-    """A scene with the rig that its knobs start from, and the values that they are set to."""
+    """A scene with the rig that its knobs start from, the values that they are set to, and the document it is of."""
 
     scene: Scene
     nominal: Rig
     values: Mapping[str, float]
+    document: Document
 
     @property
     def request(self) -> SetRequest:

@@ -9,7 +9,8 @@ import pytest
 
 from tests.notebooks.workbench.openbench import TEXT, TYPED, opened, said, title
 from thermicon.base.files.atomic import OutputError
-from thermicon.circuit import Rig
+from thermicon.circuit import Rig, simulate
+from thermicon.icons import parse
 from thermicon.notebooks.files.recovery import UnsavedText
 from thermicon.notebooks.workbench.document_bar import DocumentBar
 
@@ -55,6 +56,27 @@ def test_a_shipped_set_asks_for_a_name_and_a_name_that_is_there_for_consent(path
     bar._safely(bar._save_as)
     assert path.read_text(encoding="utf-8") == TYPED
     assert title(bar) == "alerts.cue"
+
+
+def test_a_new_set_is_right_as_it_is_and_has_a_name_of_its_own(path: Path) -> None:
+    bench, bar = opened(path)
+    bar._safely(bar._new)
+    assert title(bar) == "untitled"
+    assert [icon.name for icon in parse(bench.text)] == ["first"]
+    assert simulate(parse(bench.text)["first"]).reachable
+    bar.buttons["Save as"].click()
+    assert bar.name.value == "untitled.cue"
+
+
+def test_what_was_chosen_last_is_opened_and_the_end_of_a_long_name_is_shown(path: Path) -> None:
+    (path.parent / f"warm-and-cool-pulses-of-{'many' * 5}-07.cue").write_text(TYPED, encoding="utf-8")
+    _, bar = opened(path)
+    bar.buttons["Open"].click()
+    bar.path.value = "nowhere.cue"
+    bar.files.value = next(name for name in bar.files.options if name.endswith("07.cue"))
+    bar._safely(bar._open_selected)
+    assert title(bar) == "warm-and-coo…ymany-07.cue"
+    assert bar.title.tooltip == bar.document.name
 
 
 def test_files_and_shipped_sets_are_opened_and_undo_stays_within_one(path: Path) -> None:

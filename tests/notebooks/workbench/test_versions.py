@@ -1,5 +1,6 @@
 """What the page is given to play, and a version pinned beside the present one, without a browser."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy
@@ -8,6 +9,7 @@ import pytest
 from tests.notebooks.workbench.openbench import wait
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import parse
+from thermicon.notebooks.files.document import Document
 from thermicon.notebooks.timeline.frames import WORDS
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.reel import reel_of, shipped_texts
@@ -52,6 +54,25 @@ def test_sides_change_with_text_icon_rig_and_knobs_and_change_back(design: Desig
     assert (design.rig.name, design.scene.icon, design.values) == ("fingertip", "nigh", {})
     assert design.receive({"type": "undo"}).meta["text"] == TWO
     assert "pinned" not in design.receive({"type": "unpin"}).meta
+
+
+def test_a_version_of_another_file_comes_back_with_its_file_and_no_file_gets_the_text_of_another(
+    tmp_path: Path, design: DesignModel
+) -> None:
+    files = {"mine.cue": TWO, "twelve.cue": TWO.replace("near", "far")}
+    for name, text in files.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    mine, twelve = (Document.open(tmp_path / name) for name in files)
+    design.open(mine)
+    design.receive({"type": "pin"})
+    design.receive({"type": "text", "text": TWO.replace("by 4", "by 3")})
+    design.open(twelve)
+    for document, text in ((mine, TWO), (twelve, files["twelve.cue"]), (mine, TWO)):
+        design.receive({"type": "swap"})
+        assert (design.document, design.text) == (document, text)
+        assert not document.dirty
+    design.document.save()
+    assert {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()} == files
 
 
 def test_both_sides_are_ranked_even_where_one_was_changed_at_once(
