@@ -37,7 +37,7 @@ class HeatView {
     const { labels } = this.frame;
     const common = commonStart(labels);
     const corner = make("span", { role: "columnheader", class: "tm-corner", title: common && `every name begins with ${common}` }, common && `${common}…`);
-    const own = (name) => name.slice(common.length);
+    const own = (name) => endsKept(name.slice(common.length));
     const heads = labels.map((name, j) =>
       make("span", { role: "columnheader", class: "tm-column", "data-column": j, title: name, "aria-label": name }, make("span", {}, own(name))));
     const rows = labels.map((name, i) => {
@@ -169,6 +169,11 @@ class HeatView {
     this.observer.disconnect();
     this.unwatch();
   }
+}
+
+/** A name with its beginning and its end, which tells the icons of a set apart most often. */
+function endsKept(name, most = 16) {
+  return name.length > most ? `${name.slice(0, most / 2 - 1)}…${name.slice(-most / 2)}` : name;
 }
 
 /** What all names of a set begin with, up to a sign between words; it is said once. Nothing where it is short. */
