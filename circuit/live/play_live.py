@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from thermicon.base.checks.arguments import checked
+from thermicon.base.files.atomic import OutputError, check_folder, kept_text
 from thermicon.base.files.inputs import InputError
 from thermicon.base.numbers.program import this_program
 from thermicon.icons.files.shipped import Icons, by_name
@@ -17,7 +18,6 @@ from thermicon.icons.files.shipped import Icons, by_name
 from ..delivery.delivered_drive import ModuleDrive
 from ..delivery.device import Device
 from ..delivery.export import Export
-from ..delivery.export_folder import check_export_folder
 from ..delivery.formats.psychopy import guard_numbers
 from ..delivery.pack import digest
 from ..play.watch import Numbers, Refused
@@ -211,9 +211,16 @@ def live_numbers(demands: Demands, device_protects: bool) -> Numbers:
     return numbers._replace(look_every_s=min(numbers.look_every_s, LOOK_EVERY_S))
 
 
+def check_empty(folder: Path) -> None:
+    """Fail now where a folder cannot be made, or holds anything: OutputError."""
+    check_folder(folder)
+    if folder.is_dir() and (there := sorted(path.name for path in folder.iterdir())):
+        raise OutputError(f"{kept_text(folder, there)}; {NEVER_REPLACED}")
+
+
 def _begin_folder(folder: Path, rig: Rig) -> None:
     """Make the folder, with the rig that its logs are of."""
-    check_export_folder(folder, how=NEVER_REPLACED)
+    check_empty(folder)
     folder.mkdir(exist_ok=True)
     document = json.loads(rig.document)
     notes = [*document.get("notes", []), f"the logs beside this file are of {SIMULATED}"]

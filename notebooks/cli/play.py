@@ -53,13 +53,12 @@ def play_command(
         raise usage("names the icons itself; leave out --icon", "--order")
     if check and (folder is not None or order is not None):
         raise usage("plays nothing; leave out -o and --order", "--check")
-    from thermicon.circuit.delivery.export_folder import check_export_folder
-    from thermicon.circuit.live.play_live import NEVER_REPLACED, play_export
+    from thermicon.circuit.live.play_live import check_empty, play_export
     from thermicon.circuit.play.watch import Refused
     from thermicon.circuit.safety.playmap import UnjudgedError
 
     if folder is not None:
-        check_export_folder(folder, how=NEVER_REPLACED)
+        check_empty(folder)
     slow = is_watched()
     try:
         made, names = exported(file, rig, icon, order, pause)
