@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from ..play.logged_line import LineRow
 from ..rig.rig import Rig
 from ..safety.demands import DEMANDS, Demands
 from ..solver.batch_inputs import Intervals, State, bank_of, run_on
 from ..solver.network import COLD, HOT, network_of
 from ..solver.steady import state_under_current
-from .logged_line import LineRow
 
 TURN_S = 0.01
 LONGEST_SILENCE_S = 1.0
@@ -66,6 +66,7 @@ class SimulatedController:
         self._turns = 0
         self._stopped = ""
         self._rows: list[LineRow] = []
+        self.fell_K: dict[str, float] = {}  # the guard tests the polarity
         self._lock = threading.Lock()  # sensors are read in a thread of their own
 
     def open(self) -> None:
@@ -106,6 +107,18 @@ class SimulatedController:
         with self._lock:
             rows, self._rows = self._rows, []
         return rows
+
+    def rest_row(self, name: str, level_C: float) -> float:
+        """The controller holds a set-point."""
+        return level_C
+
+    def play_rows(self, name: str, rows: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+        """The controller takes one set-point after the other."""
+        return list(rows)
+
+    def began_s(self, host_s: float) -> float:
+        """Both have one clock."""
+        return host_s
 
     def status(self) -> Mapping[str, object]:
         """Return what it is set to, by the names of demands."""

@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 from ..delivery.delivered_drive import ModuleDrive
 from ..delivery.formats.form import course_C
 from ..play.guard import Guard
+from ..play.logged_line import LoggedLine
 from ..play.script import COURSE_EVERY_S
 from ..play.steps import NOTHING_S
 from ..play.watch import Numbers, Refused, Stopped
-from .logged_line import LoggedLine
 from .play_log import PlayLog
 
 TICK_S = 0.01
@@ -46,7 +46,7 @@ class LivePlayer:
         self._sensors = line.read, line.read_second
         self._ticked_s = clock()
 
-    def prepare(self, rest_C: float) -> None:
+    def prepare(self, delivery: ModuleDrive) -> None:
         """Prove that the device switches off by itself, test the polarity, and rest; raises Refused or Stopped."""
         self.line.open()
         self._mark("output off")
@@ -62,10 +62,11 @@ class LivePlayer:
         begun_s = self._clock()
         self._mark("polarity test and rest")
         try:
-            self.guard.rest(self.line, rest_C, self._sensors)
+            row = self.line.rest_row(delivery.icon.name, float(delivery.played.command[0]))
+            self.guard.rest(self.line, row, self._sensors)
         finally:
-            if self.guard.fell_K:
-                self.proofs["fell_K"] = min(self.guard.fell_K.values())
+            if fell_K := self.guard.fell_K or self.line.fell_K:
+                self.proofs["fell_K"] = min(fell_K.values())
         self.proofs["rest_s"] = self._clock() - begun_s
 
     def play(self, delivery: ModuleDrive, pause_s: float) -> None:
@@ -74,13 +75,15 @@ class LivePlayer:
             self.guard.keep()
             self._pass(TICK_S)
         self._tell(f"plays {delivery.icon.name}")
-        rows = list(zip(delivery.played.time_s.tolist(), delivery.played.command.tolist(), strict=True))
+        set_points = zip(delivery.played.time_s.tolist(), delivery.played.command.tolist(), strict=True)
+        rows = self.line.play_rows(delivery.icon.name, list(set_points))
+        rest = self.line.rest_row(delivery.icon.name, float(delivery.played.command[0]))
         course = [(k * COURSE_EVERY_S, at_C) for k, at_C in enumerate(course_C(delivery, COURSE_EVERY_S).tolist())]
         self.guard.began_s = math.inf
         try:
-            self.guard.play(self.line, rows, rows[0][1], course, self._sensors)
+            self.guard.play(self.line, rows, rest, course, self._sensors)
         finally:
-            self.log.began(self.guard.began_s)
+            self.log.began(self.line.began_s(self.guard.began_s))
         self._pass(TICK_S)
 
     def off(self) -> None:
@@ -117,7 +120,7 @@ def play_in_order(player: LivePlayer, drives: Sequence[ModuleDrive], pause_s: fl
         for number, delivery in enumerate(drives):
             player.log.open(delivery)
             if number == 0:
-                player.prepare(float(delivery.played.command[0]))
+                player.prepare(delivery)
             if plays:
                 player.play(delivery, max(pause_s, player.pause_s))
     except (Stopped, KeyboardInterrupt) as problem:

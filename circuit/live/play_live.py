@@ -26,11 +26,12 @@ from ..safety.demands import Demands
 from .controller import LONGEST_SILENCE_S, SimulatedController, settings_of
 from .demanded import MetDemand, met_demands, refuse_missing, statements_of
 from .live_player import LivePlayer, play_in_order
+from .own_board import OwnBoard, board_numbers
 from .play_log import MeasuredPlay, PlayLog
 from .ready import CONTROLLER, judged
 
 LOOK_EVERY_S = 0.05
-SIMULATED = "a simulated controller"
+SIMULATED, OWN = "a simulated controller", "a board"
 NEVER_REPLACED = "give a new or empty folder, since a log is never overwritten"
 USUAL_PAUSE_S = 10.0
 """As the gap of a session; a display is then back where the prediction of a play begins, within some hundredths."""
@@ -151,8 +152,13 @@ def play_export(
     why_stop: Callable[[], str] = str,
     tell: Callable[[str], None] = lambda text: None,
     checks_only: bool = False,
+    port: str | None = None,
+    timer: tuple[Callable[[], float], Callable[[float], None]] = (time.monotonic, time.sleep),
 ) -> LiveResult:
-    """Play drives of an export on the simulated controller, or only prepare it (`checks_only`)."""
+    """Play drives of an export on the board at a port, else on the simulated controller; or only prepare it.
+
+    `timer` is clock and sleep in real time.
+    """
     if made.barred:
         raise Refused("; ".join(f"{name}: {refusal}" for name, refusal in made.barred))
     cautions = [text for each in made.prepared if each.verdict.colour == "amber" for text in each.verdict.cautions]
@@ -166,18 +172,25 @@ def play_export(
     demands = Demands.strictest([each.verdict.demands for each in made.prepared])
     peak_A = max(float(abs(drive.trace.current_A).max()) for drive in drives)
     now = SimulatedTime()
-    clock, sleep = (time.monotonic, time.sleep) if real_time else (now, now.sleep)
-    line = SimulatedController(made.rig, settings_of(demands, peak_A), clock)
+    clock, sleep = timer if real_time or port else (now, now.sleep)
+    line: SimulatedController | OwnBoard
+    if port is None:
+        line, device = SimulatedController(made.rig, settings_of(demands, peak_A), clock), SIMULATED
+    else:
+        line, device = OwnBoard(port, made, clock), OWN
+        line.open()
     met = met_demands(demands, line.status(), statements_of(stated))
     refuse_missing(met)
     numbers = live_numbers(demands, any(row.label == "cut-off" and row.how == "held" for row in met))
     if checks_only:
         numbers = numbers._replace(rest_s=0.0, pause_s=0.0)
+    if port is not None:
+        numbers = board_numbers(numbers, demands)
     if folder is not None:
-        _begin_folder(folder, made.rig)
+        _begin_folder(folder, made.rig, device)
     log = PlayLog(folder)
     player = LivePlayer(line, numbers, log, clock, sleep, why_stop, tell)
-    log.mark(SIMULATED)
+    log.mark(device)
     stopped = ""
     try:
         stopped = play_in_order(player, drives, USUAL_PAUSE_S if pause_s is None else pause_s, plays=not checks_only)
@@ -186,7 +199,7 @@ def play_export(
         raise
     finally:
         about = {
-            "device": SIMULATED,
+            "device": device,
             "thermicon": this_program(),
             "rig_sha256": digest(made.rig.document.encode()),
             "drives_sha256": {name: digest(made.form.write(drive)) for name, drive in known.items()},
@@ -218,10 +231,10 @@ def check_empty(folder: Path) -> None:
         raise OutputError(f"{kept_text(folder, there)}; {NEVER_REPLACED}")
 
 
-def _begin_folder(folder: Path, rig: Rig) -> None:
+def _begin_folder(folder: Path, rig: Rig, device: str) -> None:
     """Make the folder, with the rig that its logs are of."""
     check_empty(folder)
     folder.mkdir(exist_ok=True)
     document = json.loads(rig.document)
-    notes = [*document.get("notes", []), f"the logs beside this file are of {SIMULATED}"]
+    notes = [*document.get("notes", []), f"the logs beside this file are of {device}"]
     rig_of({**document, "notes": notes}, f"rig {rig.name}").save(folder / "rig.toml")

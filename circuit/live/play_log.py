@@ -18,8 +18,8 @@ from thermicon.base.numbers.arrays import Array
 from ..delivery.delivered_drive import ModuleDrive
 from ..delivery.formats.form import events_in
 from ..delivery.pack import plain
+from ..play.logged_line import LineRow
 from ..solver.trace import Trace, write_trace
-from .logged_line import LineRow
 from .ready import SENSORS
 
 MEASURED = ("set_point_C", *(f"probe_{name}_C" for name in SENSORS), "current_A", "voltage_V")

@@ -21,9 +21,9 @@ from tests.circuit.delivery.lanes import RATE, Lanes
 from thermicon.circuit import Export
 from thermicon.circuit.delivery.delivered_drive import ModuleDrive
 from thermicon.circuit.live.live_player import LivePlayer, play_in_order
-from thermicon.circuit.live.logged_line import LineRow
 from thermicon.circuit.live.play_live import live_numbers
 from thermicon.circuit.live.play_log import MeasuredPlay, PlayLog
+from thermicon.circuit.play.logged_line import LineRow
 from thermicon.circuit.safety.demands import Demands
 
 TURN_S = 0.01
