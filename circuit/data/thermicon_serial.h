@@ -15,6 +15,12 @@
 #ifndef THERMICON_SERIAL_H
 #define THERMICON_SERIAL_H
 
+#ifdef THERMICON_PLAYER_H
+#error "include thermicon_serial.h in place of thermicon_player.h: it makes the watchdog shorter"
+#endif
+#ifndef THERMICON_WATCHDOG_S
+#define THERMICON_WATCHDOG_S 1.0f /* a host that plays live is never silent for longer */
+#endif
 #include <stdio.h>
 #include "thermicon_player.h"
 
@@ -68,7 +74,7 @@ static inline uint16_t thermicon_crc(const char *text, size_t length) {
     int bit;
     for (k = 0; k < length; k++) {
         crc = (uint16_t)(crc ^ (uint16_t)((uint8_t)text[k] << 8));
-        for (bit = 0; bit < 8; bit++) crc = (uint16_t)(crc & 0x8000u ? (crc << 1) ^ 0x1021u : crc << 1);
+        for (bit = 0; bit < 8; bit++) crc = (uint16_t)(crc & 0x8000u ? ((unsigned)crc << 1) ^ 0x1021u : (unsigned)crc << 1);
     }
     return crc;
 }

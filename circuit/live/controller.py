@@ -74,6 +74,9 @@ class SimulatedController:
         self._go_on()
         self._stopped = ""
 
+    def close(self) -> None:
+        """Nothing to let go."""
+
     def send(self, row: float) -> None:
         """Hold the display at a set-point in °C."""
         self._put(row, None)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -178,39 +179,42 @@ def play_export(
         line, device = SimulatedController(made.rig, settings_of(demands, peak_A), clock), SIMULATED
     else:
         line, device = OwnBoard(port, made, clock), OWN
+    with closing(line):
         line.open()
-    met = met_demands(demands, line.status(), statements_of(stated))
-    refuse_missing(met)
-    numbers = live_numbers(demands, any(row.label == "cut-off" and row.how == "held" for row in met))
-    if checks_only:
-        numbers = numbers._replace(rest_s=0.0, pause_s=0.0)
-    if port is not None:
-        numbers = board_numbers(numbers, demands)
-    if folder is not None:
-        _begin_folder(folder, made.rig, device)
-    log = PlayLog(folder)
-    player = LivePlayer(line, numbers, log, clock, sleep, why_stop, tell)
-    log.mark(device)
-    stopped = ""
-    try:
-        stopped = play_in_order(player, drives, USUAL_PAUSE_S if pause_s is None else pause_s, plays=not checks_only)
-    except Refused as problem:
-        stopped = str(problem)
-        raise
-    finally:
-        about = {
-            "device": device,
-            "thermicon": this_program(),
-            "rig_sha256": digest(made.rig.document.encode()),
-            "drives_sha256": {name: digest(made.form.write(drive)) for name, drive in known.items()},
-            "status": line.status(),
-            "demands": met,
-            "proofs": player.proofs,
-            "timing": {"worst_gap_s": player.worst_gap_s},
-            "stopped": stopped,
-        }
-        plays = log.finish(about)
-    return LiveResult(() if checks_only else plays, stopped, met, player.proofs, line.status(), folder)
+        met = met_demands(demands, line.status(), statements_of(stated))
+        refuse_missing(met)
+        numbers = live_numbers(demands, any(row.label == "cut-off" and row.how == "held" for row in met))
+        if checks_only:
+            numbers = numbers._replace(rest_s=0.0, pause_s=0.0)
+        if port is not None:
+            numbers = board_numbers(numbers, demands)
+        if folder is not None:
+            _begin_folder(folder, made.rig, device)
+        log = PlayLog(folder)
+        player = LivePlayer(line, numbers, log, clock, sleep, why_stop, tell)
+        log.mark(device)
+        stopped = ""
+        try:
+            stopped = play_in_order(
+                player, drives, USUAL_PAUSE_S if pause_s is None else pause_s, plays=not checks_only
+            )
+        except Refused as problem:
+            stopped = str(problem)
+            raise
+        finally:
+            about = {
+                "device": device,
+                "thermicon": this_program(),
+                "rig_sha256": digest(made.rig.document.encode()),
+                "drives_sha256": {name: digest(made.form.write(drive)) for name, drive in known.items()},
+                "status": line.status(),
+                "demands": met,
+                "proofs": player.proofs,
+                "timing": {"worst_gap_s": player.worst_gap_s},
+                "stopped": stopped,
+            }
+            plays = log.finish(about)
+        return LiveResult(() if checks_only else plays, stopped, met, player.proofs, line.status(), folder)
 
 
 def live_numbers(demands: Demands, device_protects: bool) -> Numbers:

@@ -69,13 +69,19 @@ class Board:
         self._lock = threading.RLock()  # sensors are read in a thread of their own
         self._state, self._fault, self._last_ms = NOT_BEGUN, 0, -math.inf
         self._last: LineRow | None = None
-        self._behind_s, self._heard_s, self._played_s = math.inf, -math.inf, math.nan
+        self._is_past = True
+        self._behind_s, self._heard_s = math.inf, -math.inf
+        self._began_s, self._period_s = math.inf, 0.0
         self._test_from: tuple[float, float] | None = None
         self.fell_K: dict[str, float] = {}
         self.settings: dict[str, float] = {}
 
     def open(self) -> None:
-        """Connect, unless it is done: the port for this program alone, then the identity; Refused for another export."""
+        """Connect, unless that is done: the port for this program alone; Refused for a board of another export.
+
+        What stopped the board before counts no more; it stays off until it begins.
+        """
+        self._is_past = True
         if self._port is not None:
             return
         self._port = _port(self._name)
@@ -109,12 +115,13 @@ class Board:
             raise Stopped(f"the board did not {'begin' if what == 'B' else 'play'}: {answer}")
         if what == "B":
             self._test_from, self.fell_K = None, {}
+            self._state, self._is_past = OFF, False
             return None
-        self._played_s = math.nan
+        self._began_s = math.inf
         return self._still
 
     def test(self, current_A: float) -> bool:
-        """Begin, whatever the current: the board tests the polarity by itself, and says nothing may be put out by hand."""
+        """Begin, whatever the current: the board tests the polarity by itself, and puts nothing out by hand."""
         self.send(("B", 0))
         return False
 
@@ -156,11 +163,12 @@ class Board:
 
     def play_rows(self, name: str, rows: Sequence[tuple[float, float]]) -> list[tuple[float, Any]]:
         """The board plays an icon by itself."""
+        self._period_s = rows[1][0] - rows[0][0]
         return [(0.0, ("P", self._names.index(name))), (rows[-1][0], None)]
 
     def began_s(self, host_s: float) -> float:
-        """The time of the first row in which the icon played."""
-        return host_s if math.isnan(self._played_s) else self._played_s - 1e-6
+        """The time at which the icon began by its rows, of which each has the place in the icon; some may be lost."""
+        return self._began_s - 1e-6 if math.isfinite(self._began_s) else host_s
 
     def _still(self) -> bool:
         with self._lock:
@@ -171,7 +179,7 @@ class Board:
         """The last row; what switched off by itself, or has been silent for a second, is told."""
         with self._lock:
             self._take()
-            if self._state == STOPPED:
+            if self._state == STOPPED and not self._is_past:
                 raise RuntimeError(f"the board switched off by itself: {FAULTS[self._fault]}")
             if self._lost or self._last is None or time.monotonic() - self._heard_s > SILENT_S:
                 raise RuntimeError(self._lost or f"the board has been silent for {SILENT_S:g} s")
@@ -216,7 +224,7 @@ class Board:
                 self._answers.append(words)
 
     def _take_row(self, words: list[str]) -> None:
-        ms, state, fault, _, _, *rest = words
+        ms, state, fault, _, place, *rest = words
         loop_C, second_C, goal_C, output_A = (1e-3 * int(word) for word in rest[:4])
         voltage_V = None if rest[4] == "-" else 1e-3 * int(rest[4])
         own_s = 1e-3 * int(ms)
@@ -233,8 +241,8 @@ class Board:
         if was == TESTING and self._test_from is not None and self._state != TESTING:
             fell_K = (before - after for before, after in zip(self._test_from, levels, strict=True))
             self.fell_K = dict(zip(("sensor", "second sensor"), fell_K, strict=True))
-        if self._state == PLAYING and math.isnan(self._played_s):
-            self._played_s = row.time_s
+        if self._state == PLAYING:
+            self._began_s = min(self._began_s, row.time_s - int(place) * self._period_s)
         self._last = row
         self._rows.append(row)
 

@@ -27,7 +27,10 @@ def play_command(
     order: Annotated[
         Path | None, out("FILE", "Play in the order of this file, which has one name per line.", "--order")
     ] = None,
-    device: Annotated[Literal["simulated"], typer.Option(help="What plays.")] = "simulated",
+    device: Annotated[
+        Literal["simulated", "board"], typer.Option(help="What plays: a simulation, or a board of your own.")
+    ] = "simulated",
+    port: Annotated[str | None, opt("PORT", "Serial port of the board, such as /dev/ttyACM0 or COM5.")] = None,
     folder: Annotated[
         Path | None, out("DIR", "A new folder for log, prediction and settings of each play.", "-o", "--output")
     ] = None,
@@ -53,6 +56,8 @@ def play_command(
         raise usage("names the icons itself; leave out --icon", "--order")
     if check and (folder is not None or order is not None):
         raise usage("plays nothing; leave out -o and --order", "--check")
+    if (device == "board") != (port is not None):
+        raise usage("belongs to --device board, which needs it", "--port")
     from thermicon.circuit.live.play_live import check_empty, play_export
     from thermicon.circuit.play.watch import Refused
     from thermicon.circuit.safety.playmap import UnjudgedError
@@ -68,7 +73,7 @@ def play_command(
         with stop_key() as pressed:
             result = play_export(
                 made, names, pause_s=pause, amber=amber, stated=stated or [], folder=folder, real_time=slow,
-                why_stop=pressed, tell=lambda text: note(f"{text} …") if slow else None, checks_only=check,
+                why_stop=pressed, tell=lambda text: note(f"{text} …") if slow else None, checks_only=check, port=port,
             )  # fmt: skip
     except (Refused, UnjudgedError) as problem:
         note(f"refused: {problem}", always=True)

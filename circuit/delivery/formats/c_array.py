@@ -28,7 +28,7 @@ from .form import (
     samples_of,
 )
 
-PLAYER = "thermicon_player.h"
+PLAYER, SERIAL = "thermicon_player.h", "thermicon_serial.h"
 
 OUTPUT_UNITS = {"volts": "volts", "amperes": "amperes", "duty": "duty, -1 ... 1", "temperatures": "amperes"}
 
@@ -124,7 +124,7 @@ def identifier(name: str) -> str:
 
 
 def player_files(drives: Sequence[Played], demands: Demands) -> dict[str, bytes]:
-    """Return the player for drives of one device, with the numbers that the hardware must keep to.
+    """Return the player for drives of one device, with the numbers that the hardware must keep to, and its serial line.
 
     Its digest is of the drives, and of itself after them, with zeros for the digest.
     """
@@ -165,7 +165,8 @@ def player_files(drives: Sequence[Played], demands: Demands) -> dict[str, bytes]
         "VERDICTS": "\n".join(f"   {played.file}: {played.verdict}." for played in drives),
     }
     together = b"".join(each.content for each in drives) + filled(PLAYER, numbers)
-    return {PLAYER: filled(PLAYER, {**numbers, "DIGEST": sha256(together).hexdigest()[:DIGITS]})}
+    player = filled(PLAYER, {**numbers, "DIGEST": sha256(together).hexdigest()[:DIGITS]})
+    return {PLAYER: player, SERIAL: filled(SERIAL, {})}
 
 
 def filled(template: str, values: Mapping[str, str]) -> bytes:
@@ -212,7 +213,7 @@ FORMAT = Format(
     columns=columns,
     stem=identifier,
     player=player_files,
-    set_files=(PLAYER,),
+    set_files=(PLAYER, SERIAL),
     holds=(
         *("watchdog_s", "cut_off_display_C", "held_cut_off_display_C", "rest_before_first_play_s"),
         *("pause_at_least_s", "current_limit_A", "loop"),
