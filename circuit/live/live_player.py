@@ -100,8 +100,8 @@ class LivePlayer:
     def _pass(self, seconds: float) -> None:
         """Let time pass, log what the device reports meanwhile, and stop where somebody wants that."""
         until_s = self._clock() + seconds
-        while until_s - self._clock() > NOTHING_S:
-            self._sleep(min(until_s - self._clock(), TICK_S))
+        while (left_s := until_s - self._clock()) > NOTHING_S:
+            self._sleep(min(left_s, TICK_S))
             now_s = self._clock()
             self.worst_gap_s = max(self.worst_gap_s, now_s - self._ticked_s)
             self._ticked_s = now_s

@@ -257,7 +257,8 @@ def _port(name: str) -> Any:
         port = serial.Serial(name, baudrate=BAUD, timeout=0, write_timeout=SILENT_S, exclusive=True)
     except serial.SerialException as problem:
         taken = "lock" in str(problem).casefold() or "busy" in str(problem).casefold()
-        cure = "another program has it; close that" if taken else "thermicon list ports shows those that there are"
+        there = ", ".join(port.device for port in import_module("serial.tools.list_ports").comports())
+        cure = "another program has it; close that" if taken else f"there are: {there or 'none'}"
         raise Refused(f"the port {name} cannot be opened ({problem}); {cure}") from None
     if os.name == "posix":
         import fcntl

@@ -87,6 +87,7 @@ class Thermostat:
         self.off_at_s = math.inf
         self.far, self.rate = np.array([np.inf, -np.inf] * 4), 0.0
         self.reported: list[LineRow] = []
+        self.fell_K: dict[str, float] = {}
         self.skin_C: list[tuple[float, float]] = []
         self.events: list[tuple[float, Callable[[], None]]] = []
         self.kp, self.ki, _ = self.demands.loop.played if self.demands.loop else (0.0, 0.0, 0.0)
@@ -183,6 +184,15 @@ class Thermostat:
 
     def open(self) -> None:
         self.why = ""
+
+    def rest_row(self, name: str, level_C: float) -> float:
+        return level_C
+
+    def play_rows(self, name: str, rows: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+        return list(rows)
+
+    def began_s(self, host_s: float) -> float:
+        return host_s
 
     def send(self, row: float) -> None:
         self._put(row, None)

@@ -39,7 +39,7 @@ def build(folder: Path, device: str, compiler: str, *flags: str, **demands: Any)
     form = load_format("c-array")
     verdict = type("Verdict", (GreenVerdict,), {"demands": replace(MADE_UP, **{**DEMANDS[device], **demands})})
     files = pack([prepare(ICON, RIG, Device.load(device), form, gate=verdict)], form)
-    assert set(files) == {"double_dip.h", "double_dip.json", "thermicon_player.h"}
+    assert set(files) == {"double_dip.h", "double_dip.json", "thermicon_player.h", "thermicon_serial.h"}
     for name, content in files.items():
         (folder / name).write_bytes(content)
     shutil.copy(Path(__file__).with_name("player_main.c"), folder / "main.c")
