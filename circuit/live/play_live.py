@@ -1,4 +1,4 @@
-"""Live play on a simulated controller in one call."""
+"""Live play on a device in one call."""
 
 from __future__ import annotations
 
@@ -85,8 +85,9 @@ def play_live(
     stated: Sequence[str] = (),
     folder: str | Path | None = None,
     real_time: bool = False,
+    port: str | None = None,
 ) -> LiveResult:
-    """Play icons on a simulated controller, as `thermicon play` does, and return what it measured.
+    """Play icons on a simulated controller or a board, as `thermicon play` does, and return what it measured.
 
     The icons are exported as set-points, and the gate judges them; the device proves that it switches off when its
     host is silent, its polarity is tested, the rest is held, then icons are played in order under a guard. Written
@@ -112,6 +113,8 @@ def play_live(
         A new or empty folder for log, predicted trace and settings of each play, and the rig; None writes nothing.
     real_time
         Whether the clock on the wall counts, not that of the simulation.
+    port
+        Serial port of a board that was compiled from an export of all these icons; None: the simulated controller.
 
     Returns
     -------
@@ -138,7 +141,8 @@ def play_live(
     on = Rig.of(rig, chosen[0].context.site)
     made = judged(chosen, on, device if isinstance(device, Device) else Device.load(device), pause_s)
     where = None if folder is None else Path(folder)
-    return play_export(made, order, pause_s=pause_s, amber=amber, stated=stated, folder=where, real_time=real_time)
+    how: dict[str, Any] = {"pause_s": pause_s, "amber": amber, "stated": stated, "folder": where}
+    return play_export(made, order, **how, real_time=real_time, port=port)
 
 
 def play_export(

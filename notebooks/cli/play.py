@@ -66,7 +66,7 @@ def play_command(
         check_empty(folder)
     slow = is_watched()
     try:
-        made, names = exported(file, rig, icon, order, pause)
+        made, names = exported(file, rig, icon, order, pause, whole=port is not None)
         if refused(made):
             note(CAUTION)
             raise Refused("nothing was put out")
@@ -86,9 +86,12 @@ def play_command(
 
 
 def exported(
-    file: str, rig: RigOptions, icon: list[str] | None, order: Path | None, pause_s: float | None
+    file: str, rig: RigOptions, icon: list[str] | None, order: Path | None, pause_s: float | None, *, whole: bool
 ) -> tuple[Export, list[str]]:
-    """The export of a set, or of a folder that was exported before, and the names to play in order."""
+    """The export of a set, or of a folder that was exported before, and the names to play in order.
+
+    It has the icons that are played, or the `whole` set, from which a board was compiled.
+    """
     from thermicon.circuit import Device
     from thermicon.circuit.live.ready import CONTROLLER, exported_before, judged
     from thermicon.circuit.safety.session_plan import read_order
@@ -108,6 +111,7 @@ def exported(
             where = rig.load(icons, file)
             if rig.rig is None and where.name == DEFAULT_RIG:
                 note(f"on the {where.name} rig; --rig names another")
-            chosen = [icons[name] for name in dict.fromkeys(names)]
+            played = [icons[name] for name in dict.fromkeys(names)]
+            chosen = pick(icons, None) if whole else played
             made = judged(chosen, where, Device.load(CONTROLLER), pause_s, progress)
     return made, names

@@ -21,13 +21,16 @@ import pytest
 from tests.circuit.delivery.followed import Follower
 from tests.circuit.delivery.formats.board import CFLAGS
 from tests.circuit.delivery.independent import worlds_of
+from tests.circuit.live.conftest import README as README_CUE
 from tests.circuit.live.conftest import made
-from thermicon.circuit import Export
+from thermicon.circuit import Device, Export, Rig
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.formats.c_array import identifier
 from thermicon.circuit.live.play_live import LiveResult, play_export
+from thermicon.circuit.live.ready import CONTROLLER, judged
 from thermicon.circuit.play.board import sealed, unsealed
 from thermicon.circuit.play.watch import Refused
+from thermicon.icons import parse
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
 STATED = ["loop: gains of the header, 0.1 s of lag, the tests"]
@@ -114,7 +117,7 @@ def test_lines_are_sealed_as_xmodem_does() -> None:
 
 def test_a_board_is_known_proven_and_off_again(tmp_path: Path, compiler: str) -> None:
     found = made("readme", 10.0)
-    with board(found, tmp_path, compiler, 4.0) as bench:
+    with board(found, tmp_path, compiler, 2.0) as bench:
         result = bench.play(found, checks_only=True)
         assert not result.stopped
         assert {row.label: row.how for row in result.demands}["watchdog"] == "proven"
@@ -131,7 +134,7 @@ def test_no_port_and_a_port_in_use_are_told(tmp_path: Path, compiler: str) -> No
     found = made("readme", 10.0)
     with pytest.raises(Refused, match="/dev/nowhere cannot be opened"):
         play_export(found, stated=STATED, port="/dev/nowhere")
-    with board(found, tmp_path, compiler, 4.0) as bench:
+    with board(found, tmp_path, compiler, 2.0) as bench:
         import serial
 
         holder = serial.Serial(bench.port, exclusive=True)
@@ -145,7 +148,9 @@ def test_no_port_and_a_port_in_use_are_told(tmp_path: Path, compiler: str) -> No
 HOST = """
 import sys, time
 from pathlib import Path
+from tests.circuit.live.conftest import README as README_CUE
 from tests.circuit.live.conftest import made
+from thermicon.circuit.live.ready import CONTROLLER, judged
 from thermicon.circuit.live.play_live import play_export
 speed = float(sys.argv[3])
 timer = lambda: speed * time.monotonic(), lambda seconds: time.sleep(seconds / speed)
@@ -223,6 +228,18 @@ def test_the_output_is_off_a_second_after_whatever_ends_the_host(
     assert on_s.max() < ended_s + OFF_WITHIN_S
     log = np.genfromtxt(tmp_path / "monday" / "arrived.log.csv", delimiter=",", skip_header=1, usecols=0)
     assert len(log) > 100, "the log is complete to its last second"
+
+
+@pytest.mark.slow
+def test_one_icon_of_the_set_that_a_board_was_compiled_from_is_asked_for(tmp_path: Path, compiler: str) -> None:
+    (tmp_path / "alerts.cue").write_text(README_CUE, encoding="utf-8")
+    words = ["play", str(tmp_path / "alerts.cue"), "--icon", "turn", "--device", "board", "--check"]
+    whole = judged(tuple(parse(README_CUE)), Rig.load("thenar"), Device.load(CONTROLLER), None)
+    with board(whole, tmp_path, compiler, 1.0) as bench:
+        command = [sys.executable, "-m", "thermicon", *words, "--port", bench.port, "--stated", STATED[0]]
+        said = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert said.returncode == 0, said.stderr
+    assert "stated" in said.stdout
 
 
 @pytest.mark.slow
