@@ -16,7 +16,7 @@ from pathlib import Path, PurePosixPath
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("base", "icons", "circuit", "perception", "notebooks")
-ALWAYS = ("tests/circuit/delivery", "tests/perception/ranking")
+ALWAYS = ("tests/circuit/delivery", "tests/perception/kernels")
 """Exported drives, and a cluster that loses a worker: what costs most when it breaks."""
 SHOWN_IN_A_BROWSER = ("notebooks/workbench", "notebooks/report", "notebooks/canvas_parts", "tests/browser")
 SHOWN_IN_PAGES = ("README.md", "docs/", "notebooks/cli", "notebooks/report", "circuit/delivery", "circuit/safety")
@@ -26,6 +26,7 @@ MINUTES = {
     "tests/browser": 3.0,
     "tests/circuit/delivery": 10.0,
     "tests/circuit/fitting": 8.0,
+    "tests/circuit/live": 6.0,
     "tests/docs": 2.5,
     "tests/icons/language": 1.0,
     "tests/notebooks/cli": 1.0,
