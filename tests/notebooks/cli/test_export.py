@@ -72,7 +72,7 @@ def test_simulate_replays_an_exported_drive_exactly_when_it_is_held(cli: Cli, tw
 )
 def test_every_format_has_a_device_of_its_own(cli: Cli, two: Path, tmp_path: Path, name: str) -> None:
     said = cli.good("export", two, "--to", name, "-o", tmp_path / "out", *SURE)
-    assert len(names(tmp_path / "out")) == {"psychopy": 6, "setpoint-csv": 6, "c-array": 5}.get(name, 4)
+    assert len(names(tmp_path / "out")) == {"psychopy": 6, "setpoint-csv": 6, "c-array": 6}.get(name, 4)
     open_loop = name not in ("tcs2-serial", "setpoint-csv")
     assert ("open loop: with a module that was not measured" in said.stderr) is open_loop
     if name == "tcs2-serial":
