@@ -53,7 +53,7 @@ class DocumentBar:
         self._taken = self.design.nominal.name  # what is selected of the list of rigs
         self._rigs: dict[str, Rig] = {}
         self._names = {self.design.nominal: self._taken}  # of rigs that were taken, as the list has them
-        self.title, self.said = widgets.HTML(), widgets.HTML()
+        self.title, self.said = widgets.HTML(), widgets.HTML().add_class("thermicon-said")
         self.buttons = {
             name: self._button(name, hint, act)
             for name, hint, act in (

@@ -202,8 +202,13 @@ def test_unsaved_text_of_a_closed_tab_is_offered_and_saved_to_its_file(page: Pag
     expect_text(again, typed)
     editor(again).press("Control+s")
     expect(again.locator(".thermicon-project")).to_contain_text("saved alerts.cue")
+    top = "element => element.getBoundingClientRect().top"
+    place = root(again).evaluate(top)
     assert file.read_text(encoding="utf-8") == typed
     assert not list(lab.folder.glob(".alerts*"))
+    type_text(again, TWO)
+    expect(again.locator(".thermicon-project")).not_to_contain_text("saved alerts.cue")
+    assert root(again).evaluate(top) == place, "what was done is said where nothing moves"
 
 
 CUT = """all => all.filter((label) => {
