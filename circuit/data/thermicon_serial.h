@@ -23,7 +23,9 @@
 #endif
 #include <stdio.h>
 #include "thermicon_player.h"
+@INCLUDES@
 
+#define THERMICON_COUNT @COUNT@
 #define THERMICON_LONGEST_LINE 16
 #define THERMICON_NOT_BEGUN 5 /* a state of D before the first B */
 
@@ -31,8 +33,7 @@ typedef struct {
     thermicon_player player;
     thermicon_board wrapped;       /* what the player uses: it also notes the output */
     const thermicon_board *board;
-    const thermicon_icon *icons;
-    uint8_t count, icon, begun, length, is_too_long;
+    uint8_t icon, begun, length, is_too_long;
     void (*write)(void *context, const char *line);
     /* Voltage of the module in mV, or NULL where it is not measured. */
     long (*voltage_mV)(void *context);
@@ -41,6 +42,13 @@ typedef struct {
     uint32_t last_us;
     uint64_t total_us;
 } thermicon_serial;
+
+/* An icon by its place in THERMICON_NAMES. */
+static inline thermicon_icon thermicon_icon_at(unsigned place) {
+    switch (place) {
+@CASES@
+    }
+}
 
 static inline int thermicon_serial_measure(void *context, float *display_C) {
     const thermicon_board *board = ((thermicon_serial *)context)->board;
@@ -87,14 +95,11 @@ static inline void thermicon_serial_write(thermicon_serial *serial, char *line, 
 
 static inline long thermicon_milli(float value) { return (long)(1000.0f * value + (value < 0.0f ? -0.5f : 0.5f)); }
 
-/* The output is off, and stays so until the host asks to begin. `icons` stand in the order of THERMICON_NAMES. */
+/* The output is off, and stays so until the host asks to begin. */
 static inline void thermicon_serial_init(thermicon_serial *serial, const thermicon_board *board,
-                                         const thermicon_icon *icons, uint8_t count,
                                          void (*write)(void *context, const char *line)) {
     memset(serial, 0, sizeof *serial);
     serial->board = board;
-    serial->icons = icons;
-    serial->count = count;
     serial->write = write;
     serial->wrapped = *board;
     serial->wrapped.context = serial;
@@ -112,7 +117,7 @@ static inline void thermicon_serial_identify(thermicon_serial *serial) {
     float high = serial->board->highest < THERMICON_HIGHEST_A ? serial->board->highest : THERMICON_HIGHEST_A;
     float watchdog = THERMICON_WATCHDOG_S < THERMICON_JUDGED_WATCHDOG_S ? THERMICON_WATCHDOG_S : THERMICON_JUDGED_WATCHDOG_S;
     snprintf(line, sizeof line, "I thermicon 1 %s %u %ld %ld %ld %ld %ld %ld %ld %ld %ld", THERMICON_DIGEST,
-             (unsigned)serial->count, thermicon_milli(watchdog), thermicon_milli(low), thermicon_milli(high),
+             (unsigned)THERMICON_COUNT, thermicon_milli(watchdog), thermicon_milli(low), thermicon_milli(high),
              thermicon_milli(THERMICON_LOW_C), thermicon_milli(THERMICON_HIGH_C), thermicon_milli(THERMICON_HELD_LOW_C),
              thermicon_milli(THERMICON_HELD_HIGH_C), thermicon_milli(THERMICON_HELD_S), thermicon_milli(THERMICON_REST_S));
     thermicon_serial_write(serial, line, sizeof line);
@@ -121,18 +126,18 @@ static inline void thermicon_serial_identify(thermicon_serial *serial) {
 /* Does what a line asks whose checksum is right. */
 static inline void thermicon_serial_obey(thermicon_serial *serial) {
     char what = serial->line[0], line[32];
-    unsigned icon = serial->line[1] == ' ' ? 0 : serial->count, k;
+    unsigned icon = serial->line[1] == ' ' ? 0 : THERMICON_COUNT, k;
     int answer = 0;
     for (k = 2; serial->line[k] >= '0' && serial->line[k] <= '9'; k++) icon = 10u * icon + (unsigned)(serial->line[k] - '0');
     if (what == '?') thermicon_serial_identify(serial);
     if (what == 'F' && serial->begun) thermicon_feed(&serial->player);
     if (what == 'S' && serial->begun) thermicon_abort(&serial->player);
-    if ((what == 'B' || what == 'P') && icon >= serial->count) return;
+    if ((what == 'B' || what == 'P') && icon >= THERMICON_COUNT) return;
     if (what == 'B') {
-        answer = (int)thermicon_begin(&serial->player, &serial->wrapped, serial->icons[icon]);
+        answer = (int)thermicon_begin(&serial->player, &serial->wrapped, thermicon_icon_at(icon));
         serial->begun = 1;
     }
-    if (what == 'P') answer = serial->begun ? (int)thermicon_play(&serial->player, serial->icons[icon]) : THERMICON_NOT_RESTED;
+    if (what == 'P') answer = serial->begun ? (int)thermicon_play(&serial->player, thermicon_icon_at(icon)) : THERMICON_NOT_RESTED;
     if (what == 'B' || (what == 'P' && answer == THERMICON_OK)) serial->icon = (uint8_t)icon;
     if (what != 'B' && what != 'P' && what != 'S') return;
     snprintf(line, sizeof line, "A %c %d", what, answer);

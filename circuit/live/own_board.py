@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from ..delivery.export import Export
 from ..delivery.formats import load_format
-from ..delivery.formats.c_array import PLAYER
+from ..delivery.formats.c_array import PLAYER, identifier
 from ..play.board import Board
 from ..play.watch import Numbers
 from ..safety.demands import CutOff, Demands, HeldCutOff
@@ -26,7 +26,8 @@ class OwnBoard(Board):
     """
 
     def __init__(self, port: str, made: Export, clock: Callable[[], float]) -> None:
-        super().__init__(port, digest_of(made), [each.delivery.icon.name for each in made.prepared], clock)
+        icons = [each.delivery.icon.name for each in made.prepared]
+        super().__init__(port, digest_of(made), sorted(icons, key=identifier), clock)
 
     def status(self) -> Mapping[str, object]:
         """Return what the board was compiled with, by the names of demands; it acts within a turn."""

@@ -128,6 +128,7 @@ def player_files(drives: Sequence[Played], demands: Demands) -> dict[str, bytes]
 
     Its digest is of the drives, and of itself after them, with zeros for the digest.
     """
+    drives = sorted(drives, key=lambda each: each.file)  # so that it is one export, whatever its order
     first = drives[0].delivery
     down, up = partial(c_float, toward=-math.inf), partial(c_float, toward=math.inf)
     inward = partial(c_float, toward=0.0)
@@ -166,7 +167,12 @@ def player_files(drives: Sequence[Played], demands: Demands) -> dict[str, bytes]
     }
     together = b"".join(each.content for each in drives) + filled(PLAYER, numbers)
     player = filled(PLAYER, {**numbers, "DIGEST": sha256(together).hexdigest()[:DIGITS]})
-    return {PLAYER: player, SERIAL: filled(SERIAL, {})}
+    places = [
+        f"    {f'case {k}' if k else 'default'}: return THERMICON_ICON({name});" for k, name in enumerate(courses)
+    ]
+    includes = "\n".join(f'#include "{each.file}"' for each in drives)
+    line = {"INCLUDES": includes, "COUNT": str(len(courses)), "CASES": "\n".join(places)}
+    return {PLAYER: player, SERIAL: filled(SERIAL, line)}
 
 
 def filled(template: str, values: Mapping[str, str]) -> bytes:

@@ -25,7 +25,6 @@ from tests.circuit.live.conftest import README as README_CUE
 from tests.circuit.live.conftest import made
 from thermicon.circuit import Device, Export, Rig
 from thermicon.circuit.delivery.formats import load_format
-from thermicon.circuit.delivery.formats.c_array import identifier
 from thermicon.circuit.live.play_live import LiveResult, play_export
 from thermicon.circuit.live.ready import CONTROLLER, judged
 from thermicon.circuit.play.board import sealed, unsealed
@@ -74,9 +73,6 @@ def board(found: Export, folder: Path, compiler: str, speed: float, wrong_of: in
     files = replace(found, form=load_format("c-array"), felt=()).files
     for name, content in files.items():
         (folder / name).write_bytes(content)
-    names = [identifier(each.delivery.icon.name) for each in found.prepared]
-    icons = [f"#define ICONS {', '.join(f'THERMICON_ICON({name})' for name in names)}"]
-    (folder / "icons.h").write_text("\n".join([*(f'#include "{name}.h"' for name in names), *icons, ""]))
     source = Path(__file__).with_name("serial_main.c")
     flags = [*CFLAGS, "-D_POSIX_C_SOURCE=200809L", "-I."]
     subprocess.run([compiler, *flags, str(source), "-o", "board", "-lm"], cwd=folder, check=True)
@@ -161,7 +157,7 @@ result = play_export(
 )
 print("stopped:", result.stopped, flush=True)
 """
-QUICK = 5.0
+QUICK = 6.0
 OFF_WITHIN_S = 1.5
 
 
@@ -231,9 +227,17 @@ def test_the_output_is_off_a_second_after_whatever_ends_the_host(
 
 
 @pytest.mark.slow
-def test_one_icon_of_the_set_that_a_board_was_compiled_from_is_asked_for(tmp_path: Path, compiler: str) -> None:
-    (tmp_path / "alerts.cue").write_text(README_CUE, encoding="utf-8")
-    words = ["play", str(tmp_path / "alerts.cue"), "--icon", "turn", "--device", "board", "--check"]
+@pytest.mark.parametrize("source", ["file", "folder"])
+def test_one_icon_of_the_set_that_a_board_was_compiled_from_is_asked_for(
+    source: str, tmp_path: Path, compiler: str
+) -> None:
+    file, drives = tmp_path / "alerts.cue", tmp_path / "drives"
+    file.write_text(README_CUE, encoding="utf-8")
+    if source == "folder":
+        export = ["export", str(file), "--to", "c-array", "--device", CONTROLLER, "-o", str(drives)]
+        subprocess.run([sys.executable, "-m", "thermicon", *export], check=True, capture_output=True)
+    played = str(drives if source == "folder" else file)
+    words = ["play", played, "--icon", "turn", "--device", "board", "--check"]
     whole = judged(tuple(parse(README_CUE)), Rig.load("thenar"), Device.load(CONTROLLER), None)
     with board(whole, tmp_path, compiler, 1.0) as bench:
         command = [sys.executable, "-m", "thermicon", *words, "--port", bench.port, "--stated", STATED[0]]
