@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermicon.base.numbers.arrays import held
-from thermicon.base.words.number_text import decimals, fixed, verdict
+from thermicon.base.words.number_text import decimals, fixed, signed, verdict
 
 from ..identification.episodes import PARTS, Episode, Episodes, distance_shares
 from ..observer.channels import CHANNELS, Channel, MemoryForm
@@ -157,7 +157,7 @@ def _direction(a: Trace, b: Trace) -> str:
     parts = []
     for trace in (a, b):
         moved = features.directions(trace)
-        sizes = " and ".join(f"{features.excursion_K(trace, c):+.2f} K at the {c} receptor" for c in moved)
+        sizes = " and ".join(f"{signed(features.excursion_K(trace, c), '+.2f')} K at the {c} receptor" for c in moved)
         parts.append(f"{_name(trace)} {features.direction_words(trace)}" + (f" ({sizes})" if sizes else ""))
     head = "same direction" if features.directions(a) == features.directions(b) else "directions differ"
     return f"{head}: {parts[0]}; {parts[1]}"
@@ -168,8 +168,9 @@ def _peaks(a: Trace, b: Trace, channel: Channel) -> str:
     needed = load_rules().one("peak", channel=channel).central
     gap = abs(peak_a - peak_b)
     digits = decimals(gap, needed)
+    first, second = (signed(peak, f"+.{digits}f") for peak in (peak_a, peak_b))
     return (
-        f"both {VERBS[channel]}: peaks {peak_a:+.{digits}f} and {peak_b:+.{digits}f} K at the {channel} receptor "
+        f"both {VERBS[channel]}: peaks {first} and {second} K at the {channel} receptor "
         f"differ by {gap:.{digits}f} K, {verdict(gap, needed)} the just noticeable {fixed(needed, digits)} K"
     )
 
@@ -179,11 +180,12 @@ def _rates(a: Trace, b: Trace, channel: Channel) -> str:
     needed = load_rules().one("rate ratio").central
     low, high = sorted((abs(rate_a), abs(rate_b)))
     if low == 0.0:
-        return f"rates {rate_a:+.2f} and {rate_b:+.2f} K/s at the {channel} receptor"
+        return f"rates {signed(rate_a, '+.2f')} and {signed(rate_b, '+.2f')} K/s at the {channel} receptor"
     ratio = high / low
     digits = decimals(ratio, needed)
+    first, second = (signed(rate, f"+.{digits}f") for rate in (rate_a, rate_b))
     return (
-        f"rates {rate_a:+.{digits}f} and {rate_b:+.{digits}f} K/s at the {channel} receptor differ by a factor "
+        f"rates {first} and {second} K/s at the {channel} receptor differ by a factor "
         f"{ratio:.{digits}f}, {verdict(ratio, needed)} the just noticeable {fixed(needed, digits)}"
     )
 
