@@ -164,7 +164,7 @@ def test_a_sensor_that_fails_in_mid_play_stops(
 REMOVED = {
     "outside 20 to 40": ("if not low_C <= now_C <= high_C:", "ni", "steps"),
     "is lost": ("if not SENSOR_LOWEST_C < now_C < SENSOR_HIGHEST_C:", "ni", "no number"),
-    "K apart": ("if apart_K > APART_K:", "ni", "lies"),
+    "K apart": ("apart_K > APART_K, now_s) >= APART_S - COARSE_S:", "ni", "lies"),
     "from its prediction": ("beside_K > BESIDE_K, now_s) > BESIDE_S:", "function", "lies"),
     "is frozen": ("SENSOR_STEP_K", "ni", "frozen"),
     "allowed": ("if most_s is not None and lasts_s > most_s:", "ni", ""),
