@@ -69,7 +69,6 @@ class Reel {
     const keys = make("div", { class: "tm-quiz-keys" }, this.prompt, this.again, this.go);
     this.body.replaceChildren(make("div", { class: "tm-quiz" }, this.player.patch.element, make("div", {}, keys, this.answers, table)));
     this.ask();
-    this.title.focus({ preventScroll: true });
   }
 
   /** Each icon comes once, in an order that nobody knows, before any comes again. */
@@ -86,6 +85,7 @@ class Reel {
     setText(this.title, "Which icon is it?");
     this.playQuiz();
     this.show();
+    this.title.focus({ preventScroll: true }); // Next is disabled now, and would take the keys with it
   }
 
   playQuiz() {
