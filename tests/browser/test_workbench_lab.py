@@ -113,7 +113,7 @@ def test_a_laptop_shows_curves_and_errors_without_scrolling_and_four_sliders_in_
         page.wait_for_timeout(500)
         assert page.evaluate(CUT_OFF) == [], width
     page.locator(".tm-stage").press("b")
-    expect(page.locator(".thermicon-bar select")).to_have_value("thenar")
+    expect(page.locator(".thermicon-bar select")).to_have_value("thenar", timeout=SETTLES_MS)
     expect(page.locator(".tm-sides tbody tr").first).to_contain_text("cold-to-warm, fingertip")
     expect(page.locator(".thermicon-knob .changed")).to_have_text("contact area (cm²) · rig 9 cm²")
 
