@@ -35,8 +35,10 @@ def on_cluster(work: Callable[[int], Part], count: int, address: str, key: str) 
     other code or fails.
     """
     kept = KeptParts.of(key)
-    for number in (known := kept.numbers(count)):
-        yield number, kept.read(number)
+    known = set[int]()
+    for number, part in kept.whole(count):
+        known.add(number)
+        yield number, part
     with _client(address) as client:
         # One copy for each worker: what a part needs may be larger than what it gives.
         (everywhere,) = client.scatter([work], broadcast=True, hash=False)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import logging
 import pickle
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -45,13 +46,12 @@ class KeptParts:
             return cls(None, key)
         return cls(folder, key)
 
-    def numbers(self, count: int) -> list[int]:
-        """Numbers below `count` of parts that are kept whole."""
-        return [number for number in range(count) if self._content(number) is not None]
-
-    def read(self, number: int) -> Any:
-        """A part that is kept."""
-        return pickle.loads(self._content(number) or b"")
+    def whole(self, count: int) -> Iterator[tuple[int, Any]]:
+        """Parts below `count` that are kept whole, with their numbers; another client may remove them meanwhile."""
+        for number in range(count):
+            content = None if self.folder is None else sealed_content(self._file(number))
+            if content is not None:
+                yield number, pickle.loads(content)
 
     def write(self, number: int, part: Any) -> None:
         """Keep a part where there is room for it."""
@@ -72,6 +72,3 @@ class KeptParts:
     def _file(self, number: int) -> Path:
         assert self.folder is not None
         return self.folder / f"{self.key}-{number}"
-
-    def _content(self, number: int) -> bytes | None:
-        return None if self.folder is None else sealed_content(self._file(number))

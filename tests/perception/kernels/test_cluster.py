@@ -167,14 +167,18 @@ def test_a_part_counts_only_as_this_user_wrote_it(tmp_path: Path, monkeypatch: p
     for number in (0, 2, 3):
         kept.write(number, {"part": number})
     other = KeptParts.of("other")
-    assert (kept.numbers(5), kept.read(2), other.numbers(5)) == ([0, 2, 3], {"part": 2}, [])
+    assert dict(kept.whole(5)) == {number: {"part": number} for number in (0, 2, 3)}
+    assert not dict(other.whole(5))
     file = tmp_path / "parts" / "this-2"
     file.write_bytes(file.read_bytes()[:-1] + b"x")
     (tmp_path / "parts" / "this-3").replace(tmp_path / "parts" / "this-4")
-    assert kept.numbers(5) == [0]
+    assert dict(kept.whole(5)) == {0: {"part": 0}}
+    going = KeptParts.of("this").whole(5)
+    assert next(going) == (0, {"part": 0})
     monkeypatch.setattr(kept_parts, "MOST", 1)
     other.write(0, "no room")
     kept.forget(5)
+    assert not list(going), "another client was done meanwhile"
     assert not list((tmp_path / "parts").iterdir())
 
 
@@ -187,7 +191,7 @@ def test_where_nothing_can_be_kept_that_is_said_once(
     kept = KeptParts.of("this")
     kept.write(0, 1)
     kept.forget(1)
-    assert kept.numbers(1) == []
+    assert not list(kept.whole(1))
     assert [record.message.partition(":")[0] for record in caplog.records] == ["nothing is kept for a client that dies"]
 
 
