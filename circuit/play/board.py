@@ -152,8 +152,7 @@ class Board:
 
     def status(self) -> Mapping[str, object]:
         """Return what the board says that it was compiled with, and why it stopped."""
-        with self._lock:
-            self._take()
+        self._take()
         stopped = FAULTS[self._fault] if self._state == STOPPED else ""
         return {**self.settings, "identity": f"board {self._digest} at {self._name}", "stopped": stopped}
 
@@ -171,12 +170,11 @@ class Board:
         return self._began_s - 1e-6 if math.isfinite(self._began_s) else host_s
 
     def _still(self) -> bool:
-        with self._lock:
-            self._take()
+        self._take()
         return self._state == PLAYING
 
     def _newest(self) -> LineRow:
-        """The last row; what switched off by itself, or has been silent for a second, is told."""
+        """Return the last row; RuntimeError where the board switched off by itself, or was silent for a second."""
         with self._lock:
             self._take()
             if self._state == STOPPED and not self._is_past:
@@ -210,18 +208,19 @@ class Board:
 
     def _take(self) -> None:
         """Take what has come: rows, of which the last one is the newest, and answers."""
-        try:
-            came = self._port.read(65_536)
-        except OSError as problem:
-            self._lost = f"the port {self._name} is lost ({problem})"
-            return
-        *lines, self._unread = (self._unread + came).split(b"\n")
-        for line in lines:
-            words = unsealed(line)
-            if words and words[0] == "D" and len(words) == 11:
-                self._take_row(words[1:])
-            elif words:
-                self._answers.append(words)
+        with self._lock:
+            try:
+                came = self._port.read(65_536)
+            except OSError as problem:
+                self._lost = f"the port {self._name} is lost ({problem})"
+                return
+            *lines, self._unread = (self._unread + came).split(b"\n")
+            for line in lines:
+                words = unsealed(line)
+                if words and words[0] == "D" and len(words) == 11:
+                    self._take_row(words[1:])
+                elif words:
+                    self._answers.append(words)
 
     def _take_row(self, words: list[str]) -> None:
         ms, state, fault, _, place, *rest = words
