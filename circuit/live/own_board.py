@@ -12,7 +12,7 @@ from ..delivery.formats.c_array import PLAYER, identifier
 from ..play.board import Board
 from ..play.watch import Numbers
 from ..safety.demands import CutOff, Demands, HeldCutOff
-from .controller import LONGEST_SILENCE_S, TURN_S
+from .controller import TURN_S
 
 DIGEST = re.compile(r'#define THERMICON_DIGEST "([0-9a-f]+)"')
 LATER_S = 1.0
@@ -35,7 +35,7 @@ class OwnBoard(Board):
         return {
             "identity": told["identity"],
             "stopped": told["stopped"],
-            "watchdog_s": min(own["watchdog"], LONGEST_SILENCE_S),
+            "watchdog_s": own["watchdog"],
             "cut_off_display_C": CutOff(own["low_C"], own["high_C"], TURN_S),
             "held_cut_off_display_C": HeldCutOff(own["held_low_C"], own["held_high_C"], own["held"]),
             "current_limit_A": (own["low_A"], own["high_A"]),
