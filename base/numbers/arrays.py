@@ -17,6 +17,8 @@ def own_arrays(holder: object, *names: str) -> None:
 
 def held(courses: Array, rows: int) -> Array:
     """Courses (..., n_time) of so many rows, the last of them held."""
+    if rows == courses.shape[-1]:
+        return courses
     return np.pad(courses, [(0, 0)] * (courses.ndim - 1) + [(0, rows - courses.shape[-1])], "edge")
 
 

@@ -1,8 +1,11 @@
 """The identity of the program that computed a result: its version and the digest of its files."""
 
 import hashlib
+import platform
+import sys
 from collections.abc import Iterator
 from functools import lru_cache
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
 from importlib.resources.abc import Traversable
@@ -26,6 +29,12 @@ def code_digest(packages: tuple[str, ...] = DRIVES) -> str:
 def this_program() -> dict[str, str]:
     """The program as a sidecar states it: its version, and the digest of the code that computes drives."""
     return {"version": own_version(), "code_sha256": code_digest()}
+
+
+def numerics() -> tuple[str, ...]:
+    """What the last digits of a result depend on besides our code: Python, processor and numerical libraries."""
+    tools = (f"{name} {import_module(name).__version__}" for name in ("numpy", "scipy", "numba", "llvmlite"))
+    return (sys.version, platform.machine(), *tools)
 
 
 def own_version() -> str:

@@ -5,15 +5,12 @@ values, from which nothing is executed. Whatever is not as it was written counts
 """
 
 import json
-import platform
-import sys
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from fractions import Fraction
 from hashlib import sha256
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +18,7 @@ import numpy as np
 from pydantic import BaseModel
 
 from thermicon.base.files.cache_folder import cache_folder, private_folder, sealed_content, write_sealed
-from thermicon.base.numbers.program import DRIVES, SUFFIXES, code_digest
+from thermicon.base.numbers.program import DRIVES, SUFFIXES, code_digest, numerics
 
 from ..rig.rules import Limits, Rule
 from ..rig.uncertainty import Uncertainty
@@ -41,10 +38,9 @@ RECORDS: tuple[type, ...] = (Before, Check, Gate, Limits, Repeated, Rule, Scenar
 
 def kept_or_judged(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> Sequence[Gate]:
     """What `worst_cases` finds, judged now or by this program before; only what may be written is kept."""
-    tools = [import_module(name).__version__ for name in ("numpy", "scipy", "numba", "llvmlite")]
     try:
         folder = private_folder(cache_folder() / "verdicts")
-        judged = text_of((code_digest(), sys.version, platform.machine(), tools, deliveries))
+        judged = text_of((code_digest(), numerics(), deliveries))
     except (OSError, TypeError):  # nowhere to keep it, or something that a hash cannot hold
         return worst_cases(deliveries, pause_s)
     path = folder / sha256(judged + repr(pause_s).encode()).hexdigest()

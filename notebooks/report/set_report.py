@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
+from thermicon.perception.kernels.kept_parts import kept_until_done
 from thermicon.perception.ranking.rank_file import as_text, plain, ranking_file
 
 from ..messages import note, progress_bar, shown_at_once
@@ -67,6 +68,7 @@ class SetReport:
         return as_text(self.to_dict())
 
 
+@kept_until_done()
 def report_of(
     icons: IconSet,
     rig: Rig,

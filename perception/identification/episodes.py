@@ -162,7 +162,8 @@ def distance_shares(
     intensity, timing = intensity_noise(form, observer, np.ones(1))[0], observer.timing_noise
     shares, total, own = np.empty(alignment.SHARES), np.zeros(alignment.SHARES), np.empty(alignment.SHARES)
     first, second = (
-        held.scaled(form, observer).features[0, k, : held.counts[0, k]] for held, k in ((one, i), (other, j))
+        Episodes(held.features[:1, k : k + 1], held.counts[:1, k : k + 1]).scaled(form, observer).features[0, 0, :count]
+        for held, k, count in ((one, i, one.counts[0, i]), (other, j, other.counts[0, j]))
     )
     alignment.aligned(first, len(first), second, len(second), intensity, timing, shares)
     if shares[alignment.MISSING] > 0.0 and np.array_equal(first[:, QUALITY], second[:, QUALITY]):

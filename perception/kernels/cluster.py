@@ -5,12 +5,13 @@ Parts of a worker that dies are computed again by others; the result does not de
 
 import logging
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from hashlib import sha256
 from importlib import import_module
 from typing import Any, TypeVar
 
-from thermicon.base.numbers.program import DRIVES
+from thermicon.base.numbers.program import DRIVES, numerics
 from thermicon.base.numbers.program import code_digest as digest_of
 from thermicon.base.words.installing import install
 
@@ -35,14 +36,21 @@ def on_cluster(work: Callable[[int], Part], count: int, address: str, key: str) 
     other code or fails.
     """
     kept = KeptParts.of(key)
-    known = set[int]()
+    left = set(range(count))
     for number, part in kept.whole(count):
-        known.add(number)
+        left.remove(number)
         yield number, part
+    if left:
+        yield from _computed(work, left, address, kept)
+    kept.done(count)
+
+
+def _computed(
+    work: Callable[[int], Part], left: Iterable[int], address: str, kept: KeptParts
+) -> Iterator[tuple[int, Part]]:
     with _client(address) as client:
         # One copy for each worker: what a part needs may be larger than what it gives.
         (everywhere,) = client.scatter([work], broadcast=True, hash=False)
-        left = (number for number in range(count) if number not in known)
         tasks = {client.submit(_run, everywhere, number, pure=False, retries=RETRIES): number for number in left}
         try:
             for task in import_module("distributed").as_completed(list(tasks), loop=client.loop):
@@ -54,7 +62,6 @@ def on_cluster(work: Callable[[int], Part], count: int, address: str, key: str) 
         except BaseException:
             client.cancel(list(tasks))
             raise
-    kept.forget(count)
 
 
 @contextmanager
@@ -100,8 +107,8 @@ def _quiet() -> Iterator[None]:
 
 
 def code_digest() -> str:
-    """Hash of the version and of all code that computes a part: workers of another version are refused."""
-    return digest_of((*DRIVES, "thermicon.perception"))
+    """Hash of all code that computes a part, and of the Python and libraries that run it: others are refused."""
+    return sha256(repr((digest_of((*DRIVES, "thermicon.perception")), numerics())).encode()).hexdigest()
 
 
 def _run(work: Callable[[int], Any], number: int) -> tuple[str, Any]:
@@ -121,5 +128,8 @@ def _result(task: Any, address: str) -> Any:
             "version of thermicon as this machine, and memory for a part of the work"
         ) from error
     if code != code_digest():
-        raise ClusterError(f"a worker of the cluster at {address} has another version of thermicon: install the same")
+        raise ClusterError(
+            f"a worker of the cluster at {address} has another version of thermicon, Python, numpy, scipy or numba: "
+            "install the same"
+        )
     return result

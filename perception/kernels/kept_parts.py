@@ -9,7 +9,8 @@ from __future__ import annotations
 import logging
 import pickle
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,27 @@ STALE_S = 30 * 24 * 3600.0
 """Parts of a computation that nobody went on with are removed after this time."""
 MOST = 2_000_000_000
 """Bytes that are kept of all computations; what comes after them is computed again."""
+
+_STAGES: ContextVar[list[tuple[KeptParts, int]] | None] = ContextVar("stages that are done", default=None)
+
+
+@contextmanager
+def kept_until_done() -> Iterator[None]:
+    """Keep the parts of every stage within until all are done: who dies in the last does not begin with the first.
+
+    Also a decorator; the outermost removes them. Where an error is raised they stay.
+    """
+    if _STAGES.get() is not None:
+        yield
+        return
+    stages: list[tuple[KeptParts, int]] = []
+    token = _STAGES.set(stages)
+    try:
+        yield
+    finally:
+        _STAGES.reset(token)
+    for kept, count in stages:
+        kept.forget(count)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +84,15 @@ class KeptParts:
             if len(content) + sum(file.stat().st_size for file in self.folder.iterdir()) <= MOST:
                 write_sealed(self._file(number), content)
 
+    def done(self, count: int) -> None:
+        """Remove the parts of a stage that is done, now or with the others that it belongs to."""
+        if (stages := _STAGES.get()) is None:
+            self.forget(count)
+        else:
+            stages.append((self, count))
+
     def forget(self, count: int) -> None:
-        """Remove the parts of a computation that is done."""
+        """Remove parts."""
         if self.folder is not None:
             with suppress(OSError):
                 for number in range(count):

@@ -17,6 +17,7 @@ from ..identification.carry_over import prepare_task
 from ..identification.new_laboratory import DRAWS, Nominal, new_laboratory
 from ..identification.population import RATE_HZ, run_end_s
 from ..identification.task import USUAL, Task
+from ..kernels.kept_parts import kept_until_done
 from ..kernels.parallel import Progress, step_counter
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..sensation.percept import perceive
@@ -27,6 +28,7 @@ from .rules_of_thumb import rig_rules
 from .scores import assemble, objection, worst_of
 
 
+@kept_until_done()
 @checked
 def rank(
     icons: Icons,

@@ -122,9 +122,10 @@ def pair_reasons(
     if _alike(a, b):
         both = f"{_name(a)} and {_name(b)}"
         return (f"nothing differs: {both} move the receptors in the same way, so their names are guessed",)
-    found = [_carries((_name(a), _name(b)), episodes, places, observer, memory), _direction(a, b)]
-    for channel in features.directions(a):
-        if channel in features.directions(b):
+    moved, moved_b = features.directions(a), features.directions(b)
+    found = [_carries((_name(a), _name(b)), episodes, places, observer, memory), _direction((a, moved), (b, moved_b))]
+    for channel in moved:
+        if channel in moved_b:
             found += [_peaks(a, b, channel), _rates(a, b, channel)]
     return (*found, _onsets(a, b, *felt))
 
@@ -153,13 +154,12 @@ def _carries(
     return f"mostly distinguished by {words}: {sizes}: {size}"
 
 
-def _direction(a: Trace, b: Trace) -> str:
+def _direction(a: tuple[Trace, tuple[Channel, ...]], b: tuple[Trace, tuple[Channel, ...]]) -> str:
     parts = []
-    for trace in (a, b):
-        moved = features.directions(trace)
+    for trace, moved in (a, b):
         sizes = " and ".join(f"{signed(features.excursion_K(trace, c), '+.2f')} K at the {c} receptor" for c in moved)
-        parts.append(f"{_name(trace)} {features.direction_words(trace)}" + (f" ({sizes})" if sizes else ""))
-    head = "same direction" if features.directions(a) == features.directions(b) else "directions differ"
+        parts.append(f"{_name(trace)} {features.direction_words(moved)}" + (f" ({sizes})" if sizes else ""))
+    head = "same direction" if a[1] == b[1] else "directions differ"
     return f"{head}: {parts[0]}; {parts[1]}"
 
 

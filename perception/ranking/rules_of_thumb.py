@@ -108,12 +108,11 @@ def pair_rules(a: Trace, b: Trace) -> tuple[RuleResult, ...]:
     moved_a, moved_b = features.directions(a), features.directions(b)
     shared = tuple(c for c in moved_a if c in moved_b)
     least = {channel: table.one("change at the receptor", channel=channel).central for channel in CHANNELS}
-    felt_a, felt_b = (
-        {c for c in features.directions(t) if abs(features.excursion_K(t, c)) >= least[c]} for t in (a, b)
-    )
+    both = (a, moved_a), (b, moved_b)
+    felt_a, felt_b = ({c for c in moved if abs(features.excursion_K(t, c)) >= least[c]} for t, moved in both)
     differ = felt_a != felt_b
     verdict = "differ" if differ else "are the same" if moved_a == moved_b else "differ below the threshold alone"
-    words = ", ".join(f"{each.icon or 'the cue'} {features.direction_words(each)}" for each in (a, b))
+    words = ", ".join(f"{each.icon or 'the cue'} {features.direction_words(moved)}" for each, moved in both)
     text = f"direction: {words}: directions {verdict}"
     ours = [_result(table.one("direction"), None, differ, float(differ), float(differ) - 1.0, 1.0, text)]
     theirs = []

@@ -86,10 +86,10 @@ def directions(trace: Trace) -> tuple[Channel, ...]:
     return tuple(sorted((c for c in size if size[c] > least), key=lambda c: when[c]))
 
 
-def direction_words(trace: Trace) -> str:
-    """The directions in words, as in `cools, then warms`."""
+def direction_words(moved: tuple[Channel, ...]) -> str:
+    """Directions in words, as in `cools, then warms`."""
     verbs = {"cold": "cools", "warm": "warms"}
-    return ", then ".join(verbs[c] for c in directions(trace)) or "does not change"
+    return ", then ".join(verbs[c] for c in moved) or "does not change"
 
 
 def _change(temperature_C: Array) -> Array:

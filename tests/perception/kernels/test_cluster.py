@@ -7,7 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +16,11 @@ import pytest
 from tests.builders import free_port
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
+from thermicon.notebooks.report.set_report import report_of
 from thermicon.perception import rank
 from thermicon.perception.kernels import cluster, kept_parts
 from thermicon.perception.kernels.cluster import ClusterError, on_cluster
-from thermicon.perception.kernels.kept_parts import KeptParts
-from thermicon.perception.selection.edit import cheapest_edits
+from thermicon.perception.kernels.kept_parts import KeptParts, kept_until_done
 
 ICONS, RIG = load_library("six-icons"), Rig.load("thenar")
 
@@ -118,14 +118,17 @@ KILLED = """
 import os, signal, sys
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
-from thermicon.perception import rank
+from thermicon.notebooks.report.set_report import report_of
 from thermicon.perception.kernels import cluster
+from thermicon.perception.kernels.kept_parts import KeptParts
 cluster.PATIENCE_S = 60.0
-def after_three(done, of):
-    if done == 3:  # the first step is what comes before the parts
+write, left = KeptParts.write, iter(range(int(sys.argv[2])))
+def write_and_die(*part):
+    write(*part)
+    if next(left) == int(sys.argv[2]) - 1:
         os.kill(os.getpid(), signal.SIGKILL)
-icons, rig = load_library("six-icons"), Rig.load("thenar")
-rank(icons, rig, people=1000, parameters=0, workers=sys.argv[1], progress=after_three)
+KeptParts.write = write_and_die
+report_of(load_library("six-icons"), Rig.load("thenar"), 4, edits="all", people=1000, workers=sys.argv[1])
 """
 
 
@@ -133,7 +136,8 @@ rank(icons, rig, people=1000, parameters=0, workers=sys.argv[1], progress=after_
 def test_who_dies_goes_on_from_the_parts_that_were_done(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cluster, "PATIENCE_S", 60.0)
     monkeypatch.setenv("THERMICON_CACHE", str(tmp_path / "cache"))
-    known = rank(ICONS, RIG, people=1000, parameters=4)
+    known = report_of(ICONS, RIG, 4, edits="all", people=1000)
+    parts, batches = tmp_path / "cache" / "parts", known.ranking.job.batches
     sent = list[int]()
     from distributed import Client
 
@@ -144,21 +148,39 @@ def test_who_dies_goes_on_from_the_parts_that_were_done(tmp_path: Path, monkeypa
     with scheduler(tmp_path) as address:
         only = worker(address, tmp_path)
         try:
-            died = subprocess.run([sys.executable, "-c", KILLED, address], timeout=300, check=False)
-            assert died.returncode == -signal.SIGKILL
-            done = {int(file.name.rpartition("-")[2]) for file in (tmp_path / "cache" / "parts").iterdir()}
+            for written in (2, batches, 3):  # in its batches, in its intervals, in its edits
+                command = [sys.executable, "-c", KILLED, address, str(written)]
+                assert subprocess.run(command, timeout=300, check=False).returncode == -signal.SIGKILL
+            done = len(list(parts.iterdir()))
             monkeypatch.setattr(Client, "submit", submit)
-            far = rank(ICONS, RIG, people=1000, parameters=4, workers=address)
-            edits = cheapest_edits(far, "all", address)
+            far = report_of(ICONS, RIG, 4, edits="all", people=1000, workers=address)
         finally:
             only.kill()
             only.wait(60)
-    assert len(done) >= 2
-    batches = [*range(known.job.batches)]
-    assert sent == [*(number for number in batches if number not in done), *range(4), *range(len(edits))]
-    assert far.to_json() == known.to_json(), "batches and intervals"
-    assert repr(edits) == repr(cheapest_edits(known, "all"))
-    assert not list((tmp_path / "cache" / "parts").iterdir())
+    assert done == 2 + batches + 3
+    assert len(sent) == len(far.edits) - 1
+    assert far.to_json() == known.to_json()
+    assert not list(parts.iterdir())
+
+
+def test_parts_stay_until_all_stages_are_done(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("THERMICON_CACHE", str(tmp_path))
+
+    @kept_until_done()
+    def stage(key: str) -> None:
+        kept = KeptParts.of(key)
+        kept.write(0, 1)
+        kept.done(1)
+
+    with suppress(KeyError), kept_until_done():
+        stage("first")
+        raise KeyError
+    assert dict(KeptParts.of("first").whole(1)) == {0: 1}
+    with kept_until_done():
+        stage("second")
+        stage("first")
+        assert len(list((tmp_path / "parts").iterdir())) == 2
+    assert not list((tmp_path / "parts").iterdir())
 
 
 def test_a_part_counts_only_as_this_user_wrote_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
