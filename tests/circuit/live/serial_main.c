@@ -37,10 +37,13 @@ static void move(double step_s) {
     felt_C += (x[1] - felt_C) * (1.0 - exp(-step_s / 0.1));
 }
 
+/* Each reading has noise of its own, 2 mK rms. */
 static int measure(void *context, float *display_C) {
-    static float noise = 0.002f;
+    double noise = -6.0;
+    int k;
     (void)context;
-    *display_C = (float)felt_C + (noise = -noise);
+    for (k = 0; k < 12; k++) noise += (double)rand() / RAND_MAX;
+    *display_C = (float)(felt_C + 0.002 * noise);
     return 1;
 }
 

@@ -23,8 +23,9 @@ from tests.circuit.delivery.formats.board import CFLAGS
 from tests.circuit.delivery.independent import worlds_of
 from tests.circuit.live.conftest import README as README_CUE
 from tests.circuit.live.conftest import made
-from thermicon.circuit import Device, Export, Rig
+from thermicon.circuit import Device, Export, Rig, fit
 from thermicon.circuit.delivery.formats import load_format
+from thermicon.circuit.fitting.log import read_log
 from thermicon.circuit.live.play_live import LiveResult, play_export
 from thermicon.circuit.live.ready import CONTROLLER, judged
 from thermicon.circuit.play.board import sealed, unsealed
@@ -33,6 +34,7 @@ from thermicon.icons import parse
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
 STATED = ["loop: gains of the header, 0.1 s of lag, the tests"]
+CONTACT = "contact.resistance_m2K_per_W"
 README = ["arrived", "turn", "low-battery"]
 
 
@@ -68,15 +70,17 @@ class Bench:
 
 
 @contextmanager
-def board(found: Export, folder: Path, compiler: str, speed: float, wrong_of: int = 0) -> Iterator[Bench]:
-    """Compile an export with its serial line, and run it on the rig as it is given, without power at first."""
+def board(
+    found: Export, folder: Path, compiler: str, speed: float, wrong_of: int = 0, plate: Rig | None = None
+) -> Iterator[Bench]:
+    """Compile an export with its serial line, and run it on its rig, or on another, without power at first."""
     files = replace(found, form=load_format("c-array"), felt=()).files
     for name, content in files.items():
         (folder / name).write_bytes(content)
     source = Path(__file__).with_name("serial_main.c")
     flags = [*CFLAGS, "-D_POSIX_C_SOURCE=200809L", "-I."]
     subprocess.run([compiler, *flags, str(source), "-o", "board", "-lm"], cwd=folder, check=True)
-    document = json.loads(found.rig.document)
+    document = json.loads((plate or found.rig).document)
     follower = Follower(document, np.random.default_rng(0), worlds=[worlds_of(document)[0]])
     circuit = follower.circuit
     at_rest = follower._steady(np.zeros(1))[0]
@@ -162,9 +166,10 @@ OFF_WITHIN_S = 1.5
 
 
 @pytest.mark.slow
-def test_icons_are_played_from_rest_and_their_logs_are_those_that_were_predicted(tmp_path: Path, compiler: str) -> None:
-    found = made("readme", 10.0)
-    with board(found, tmp_path, compiler, QUICK) as bench:
+def test_icons_are_played_from_rest_and_their_logs_tell_the_contact(tmp_path: Path, compiler: str) -> None:
+    found = made("readme", 100.0)
+    truth = 0.8 * found.rig.contact.resistance_m2K_per_W
+    with board(found, tmp_path, compiler, QUICK, plate=found.rig.with_(**{CONTACT: truth})) as bench:
         result = bench.play(found, *README, folder=tmp_path / "monday")
     assert [(play.name, play.ended) for play in result.plays] == [(name, True) for name in README]
     assert not result.stopped
@@ -174,7 +179,11 @@ def test_icons_are_played_from_rest_and_their_logs_are_those_that_were_predicted
         gaps_s = np.diff(play.columns["time_s"])
         assert gaps_s.max() < 0.1 * QUICK
         assert play.columns["time_s"][0] < 0.0
-        assert (tmp_path / "monday" / play.files[0]).is_file()
+    logs = [read_log(tmp_path / "monday" / play.files[0]) for play in result.plays]
+    (contact,) = [key for key in fit(logs[:1], tmp_path / "monday" / "rig.toml").parameters if key.key == CONTACT]
+    assert contact.identified
+    assert contact.low < truth < contact.high
+    assert contact.value == pytest.approx(truth, rel=0.2)
 
 
 def killed(host: subprocess.Popen[str], bench: Bench) -> None:
