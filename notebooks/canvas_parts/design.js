@@ -16,6 +16,7 @@ class DesignView {
     this.unsaved = new UnsavedText(id, (text) => this.tellLeft(text));
     this.editor = new Editor(root, {
       onText: (text) => this.edited(text),
+      onCaret: (word) => this.followCaret(word),
       onCommand: (type) => flow.post({ type }),
       onApply: (line) => flow.post({ type: "apply", line }),
     });
@@ -52,6 +53,15 @@ class DesignView {
     this.editSeq = this.ask({ type: "text", text });
     this.unsaved.note(text);
     this.onLocalText(text);
+  }
+
+  /** Shows the icon that the caret entered; of a family the member that is shown, or its first. */
+  followCaret(word) {
+    const within = (name) => name === word || name.startsWith(`${word}_`);
+    const name = within(this.picker.value) ? null : this.frame?.icons.find(within);
+    if (!name) return;
+    this.picker.value = name;
+    this.ask({ type: "icon", name });
   }
 
   /** Posts what the page shows already, while badge, strip and curves are those of what stood there before. */

@@ -2,9 +2,9 @@
 // since a step may be a drag or an edit taken over in the set view.
 
 class Editor {
-  /** `onText(text)`, `onCommand("undo")` and `onApply(line)` receive what the person does; tooltips go into `root`. */
-  constructor(root, { onText, onCommand, onApply }) {
-    Object.assign(this, { root, onText, onCommand, livePlace: 0 });
+  /** `onText(text)`, `onCaret(icon)`, `onCommand("undo")` and `onApply(line)` get what the person does; tooltips go into `root`. */
+  constructor(root, { onText, onCaret, onCommand, onApply }) {
+    Object.assign(this, { root, onText, onCaret, onCommand, livePlace: 0 });
     this.outside = CM.Annotation.define(); // marks changes that are not typed here
     this.troubles = new Troubles(this, onApply);
     const host = make("div", { class: "tm-code" });
@@ -54,6 +54,18 @@ class Editor {
   onChange(change) {
     if (change.docChanged && !change.transactions.some((each) => each.annotation(this.outside))) this.onText(this.text);
     if (change.docChanged || change.selectionSet) this.troubles.sayStatus();
+    const placed = change.transactions.some((each) => each.isUserEvent("select")); // by a person: click or keys
+    if (placed && change.state.selection.main.empty) this.onCaret(this.iconHere);
+  }
+
+  /** The icon or family that the caret stands in, or below; null above the first and in the set. */
+  get iconHere() {
+    const { doc, selection } = this.view.state;
+    for (let k = doc.lineAt(selection.main.head).number; k > 0; k -= 1) {
+      const [, kind, name] = /^\s*(icon|set)\s+([^\s({]+)/.exec(doc.line(k).text) ?? [];
+      if (kind) return kind === "icon" ? name : null;
+    }
+    return null;
   }
 
   /** Puts in a text from the kernel; caret and scrolling stay with the words around them. */

@@ -9,7 +9,7 @@ class Sides {
     this.swap = button("⇄ Swap", "change sides with what is pinned (B on the time line)", () => this.change());
     this.drop = button("Unpin", "let the pinned version go", () => post({ type: "unpin" }));
     this.rows = make("tbody", {});
-    const heads = ["version", "icon, rig", "felt and named", "of the icon", "onset", "worst pair"].map((head) => make("th", { scope: "col" }, head));
+    const heads = ["version", "icon, rig", "felt and named", "of the icon", "onset, nominal", "worst pair"].map((head) => make("th", { scope: "col" }, head));
     this.table = make("table", { class: "tm-sides-table" }, make("caption", { class: "tm-unseen" }, "Pinned and present version"), make("thead", {}, make("tr", {}, ...heads)), this.rows);
     this.element = make("div", { class: "tm-sides", role: "group", "aria-label": "Versions" }, this.table, this.swap, this.drop);
     this.show([]);

@@ -57,7 +57,8 @@ class DocumentBar:
         self.buttons = {
             name: self._button(name, hint, act)
             for name, hint, act in (
-                ("Open", "a cue file, a shipped set or a new one", lambda: self._toggle("open")),
+                ("New", "begin a set with one icon", self._new),
+                ("Open", "a cue file or a shipped set", lambda: self._toggle("open")),
                 ("Save", "to the file it came from (Ctrl+S)", self.save),
                 ("Save as", "under another name", lambda: self._toggle("save")),
                 ("Sliders", "contact, area, rest temperature and current limit of the rig", self.view.fold),
@@ -76,8 +77,7 @@ class DocumentBar:
             control.style.description_width = "36px"
         self.files.observe(lambda _: setattr(self.path, "value", ""), "value")  # what was chosen last is opened
         go = self._button("Open it", "open what is selected or typed", self._open_selected)
-        new = self._button("New", "begin a set with one icon", self._new)
-        self._panels = {"open": widgets.VBox([self.files, widgets.Box([self.path, go, new])])}
+        self._panels = {"open": widgets.VBox([self.files, widgets.Box([self.path, go])])}
         self.name = widgets.Text(placeholder="alerts.cue", description="file", layout={"width": "320px"})
         self.overwrite = widgets.Checkbox(value=False, description="overwrite", indent=False, layout={"width": "110px"})
         go = self._button("Save it", "write the file", self._save_as)
@@ -91,7 +91,7 @@ class DocumentBar:
         no = self._button("Discard", "drop what was not saved", self.discard)
         self.offer = widgets.Box([self.offered, yes, no]).add_class("thermicon-offer")
         buttons = list(self.buttons.values())
-        self.bar = widgets.Box([self.title, *buttons[:3], self.rig, *buttons[3:]]).add_class("thermicon-bar")
+        self.bar = widgets.Box([*buttons[:4], self.title, self.rig, *buttons[4:]]).add_class("thermicon-bar")
         self.box = widgets.VBox([self.offer, self.said, self.bar, self.panel]).add_class("thermicon-project")
         self.design.on_change(self.renew)
         self.renew()
@@ -210,11 +210,13 @@ class DocumentBar:
 
     def _show(self, document: Callable[[], Document]) -> None:
         """Take another document, once what is unsaved of this one is kept."""
+        name, dirty = self.document.name, self.document.dirty
+        left = f"unsaved text of {name} is kept: open it again to restore it" if dirty else ""
         self.document.leave()
         self.design.open(document())
         self.path.value = self.name.value = ""
         self._offer_rigs()
-        self._after("")
+        self._after(left)
         self._show_offer()
 
     def _save_as(self) -> None:

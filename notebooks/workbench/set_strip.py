@@ -73,6 +73,8 @@ class SetStrip(LiveView[SetRequest]):
         sides = []
         if (pinned := self.design.pinned) is not None:
             sides = [pinned.row("pinned", self.pinned), self.design.version.row("now", ranking, stale)]
+            if pinned.document is not self.design.document:
+                sides[0]["what"] += f" ({pinned.document.name})"
         return {"type": "strip", **numbers, "stale": stale, "rough": people < WELL[0], "about": about, "sides": sides}
 
     @property

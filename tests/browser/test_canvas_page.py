@@ -47,6 +47,25 @@ def test_a_text_of_the_kernel_never_replaces_newer_typing_and_the_caret_stays(dr
     assert drawn.caret == 11
 
 
+def test_the_icon_that_the_caret_enters_is_shown(drawn: Bench) -> None:
+    icons = ["dip", "rise", "sway_by=1", "sway_by=2"]
+    text = TEXT + "icon rise { hold for 1 s }\nicon sway(by in [1, 2] K) { warm by {by} at 2 K/s }\n"
+    drawn.frame(design(text=text, icons=icons))
+    drawn.set_caret(text.index("rise"))
+    drawn.page.keyboard.press("ArrowRight")
+    assert [message["name"] for message in drawn.sent("icon")] == ["rise"]
+    drawn.answer(icon="rise", icons=icons)
+    for keys in ("Home", "Control+a"):  # it is shown already, and a selection of all is of no icon
+        drawn.page.keyboard.press(keys)
+    drawn.set_caret(text.index("rise"))
+    drawn.page.keyboard.press("ArrowDown")
+    assert [message["name"] for message in drawn.sent("icon")] == ["rise", "sway_by=1"]
+    drawn.answer(icon="sway_by=2", icons=icons)
+    drawn.page.keyboard.press("End")
+    drawn.page.keyboard.press("Control+Home")
+    assert len(drawn.sent("icon")) == 2, "a member of this family is shown; the first line is of no icon"
+
+
 def test_words_numbers_and_units_are_coloured(drawn: Bench) -> None:
     line = drawn.page.locator(".cm-line >> nth=3")
     assert line.text_content() == "  cool by 6 °C at 3 °C/s"

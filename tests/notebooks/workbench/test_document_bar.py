@@ -60,8 +60,12 @@ def test_a_shipped_set_asks_for_a_name_and_a_name_that_is_there_for_consent(path
 
 def test_a_new_set_is_right_as_it_is_and_has_a_name_of_its_own(path: Path) -> None:
     bench, bar = opened(path)
-    bar._safely(bar._new)
+    bench.text = TYPED
+    bench._design.receive({"type": "pin"})
+    bar.buttons["New"].click()
     assert title(bar) == "untitled"
+    assert said(bar) == "unsaved text of alerts.cue is kept: open it again to restore it"
+    assert bench.set_strip._said()["sides"][0]["what"].endswith(" (alerts.cue)")
     assert [icon.name for icon in parse(bench.text)] == ["first"]
     assert simulate(parse(bench.text)["first"]).reachable
     bar.buttons["Save as"].click()
