@@ -28,7 +28,7 @@ from .controller import LONGEST_SILENCE_S, SimulatedController, settings_of
 from .demanded import MetDemand, met_demands, refuse_missing, statements_of
 from .live_player import LivePlayer, play_in_order
 from .own_board import OwnBoard, board_numbers
-from .play_log import MeasuredPlay, PlayLog
+from .play_log import MeasuredPlay, PlayLog, Seen
 from .ready import CONTROLLER, judged
 
 LOOK_EVERY_S = 0.05
@@ -158,11 +158,12 @@ def play_export(
     tell: Callable[[str], None] = lambda text: None,
     checks_only: bool = False,
     port: str | None = None,
+    seen: Seen = lambda name, rows: None,
     timer: tuple[Callable[[], float], Callable[[float], None]] = (time.monotonic, time.sleep),
 ) -> LiveResult:
     """Play drives of an export on the board at a port, else on the simulated controller; or only prepare it.
 
-    `timer` is clock and sleep in real time.
+    `seen` gets turns as they come; `timer` is clock and sleep in real time.
     """
     if made.barred:
         raise Refused("; ".join(f"{name}: {refusal}" for name, refusal in made.barred))
@@ -194,7 +195,7 @@ def play_export(
             numbers = board_numbers(numbers, demands)
         if folder is not None:
             _begin_folder(folder, made.rig, device)
-        log = PlayLog(folder)
+        log = PlayLog(folder, seen)
         player = LivePlayer(line, numbers, log, clock, sleep, why_stop, tell)
         log.mark(device)
         stopped = ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import IO, Any
@@ -25,6 +25,8 @@ from .ready import SENSORS
 MEASURED = ("set_point_C", *(f"probe_{name}_C" for name in SENSORS), "current_A", "voltage_V")
 COLUMNS = ("time_s", "host_s", "icon", "event", *MEASURED)
 FLUSHED_EVERY_S = 1.0
+Seen = Callable[[str, Sequence[LineRow]], None]
+"""What gets the name of an icon and turns of its log as they come."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,12 +58,12 @@ class _OpenLog:
 class PlayLog:
     """Writes the log of one play after the other into a folder; without a folder it keeps what was measured.
 
-    While plays go on, times count from a log's first row. `finish` counts them from the drive's first row; that takes
-    long, and comes when the output is off.
+    `seen` gets turns as they come. While plays go on, times count from a log's first row. `finish` counts them from the
+    drive's first row; that takes long, and comes when the output is off.
     """
 
-    def __init__(self, folder: Path | None) -> None:
-        self._folder = folder
+    def __init__(self, folder: Path | None, seen: Seen = lambda name, rows: None) -> None:
+        self._folder, self._seen = folder, seen
         self._file: IO[str] | None = None
         self._logs: list[_OpenLog] = []
         self._times = Counter[str]()
@@ -89,6 +91,7 @@ class PlayLog:
     def take(self, rows: Sequence[LineRow], host_s: float) -> None:
         """Write turns that the device reported at a time of this computer."""
         log = self._logs[-1]
+        self._seen(log.delivery.icon.name, rows)
         for row in rows:
             log.rows.append((row, host_s, self._mark))
             self._mark = ""

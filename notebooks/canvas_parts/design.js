@@ -24,6 +24,7 @@ class DesignView {
     this.timeline.onHandle = (line, follow) => this.editor.pointAt(line, follow);
     this.badge = new Badge(say);
     this.player = new Player(this.timeline, (message) => flow.post(message), () => this.editor.text, say);
+    this.player.stopDevice = () => flow.tell({ type: "stop device" });
     this.sides = new Sides((message) => flow.post(message), (message) => this.ask(message));
     this.timeline.keys.b = () => this.sides.change();
     this.palette = new Palette(this.editor, (message) => flow.post(message), say);

@@ -84,6 +84,7 @@ class Workbench {
       this.view?.sides?.show(meta.sides ?? []);
     }
     if (meta?.type === "reel") this.view?.player?.take(meta, buffers);
+    if (meta?.type === "device") this.view?.player?.deviceRuns(meta.plays);
     if (meta?.type === "palette") this.view?.palette?.show(meta.sets);
     if (meta?.type !== "frame") return;
     const sent = this.flow.arrived(meta.seq ?? 0);

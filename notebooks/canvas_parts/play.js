@@ -5,6 +5,7 @@ const SPEEDS = [[0.5, "½ speed"], [1, "real time"], [2, "2 × speed"]];
 const STEP_S = 0.5; // where the system asks for less motion, time steps by this
 const HALF_SIZE_DPRIME = 8; // half of the patch's area; it never grows beyond its place
 const LEAST_DPRIME = 1; // below the threshold of detection the patch stays grey
+const PREDICTED = "predicted; nothing is driven";
 const OCTAVE_K = 6; // change of the skin that is an octave of the tone
 
 /** What is felt at a time of a frame: temperatures, strength (d′) and its quality, "cold", "warm" or "". */
@@ -25,7 +26,7 @@ class Patch {
     this.spot = make("span", { class: "tm-spot" });
     this.word = make("b", { class: "tm-felt" });
     this.numbers = make("span", { class: "tm-felt-numbers" });
-    this.about = make("span", { class: "tm-predicted" }, "predicted; nothing is driven");
+    this.about = make("span", { class: "tm-predicted" }, PREDICTED);
     const title = "colour: what is felt, blue cold, orange warm, grey nothing; size: its strength (receptor clock); felt: the onset (response clock)";
     this.element = make("div", { class: "tm-patch", title }, make("span", { class: "tm-skin", "aria-hidden": true }, this.spot),
       make("span", { class: "tm-patch-words" }, this.word, this.numbers, this.about));

@@ -3,7 +3,7 @@
 class Player {
   /** `post` sends a message to the kernel; `text()` is what stands in the editor. */
   constructor(timeline, post, text, say) {
-    Object.assign(this, { timeline, post, text, say, wanted: null });
+    Object.assign(this, { timeline, post, text, say, wanted: null, device: false, stopDevice: () => {} });
     this.run = new Run(say);
     this.patch = new Patch();
     this.reel = new Reel(this, say);
@@ -43,9 +43,22 @@ class Player {
   /** A frame came; another icon than the one that plays ends the play. */
   show(frame) {
     const empty = frame.panels.length === 0;
-    for (const each of [this.play, this.whole, this.quiz]) each.disabled = empty;
-    if (this.timeline.playing && frame.icon !== this.run.name) this.stop();
+    this.play.disabled = empty && !this.device;
+    for (const each of [this.whole, this.quiz]) each.disabled = empty || this.device;
+    if (this.run.playing && frame.icon !== this.run.name) this.stop();
     this.reel.age();
+  }
+
+  /** While a device plays, nothing is previewed, and Play, Space and Escape stop the device. */
+  deviceRuns(plays) {
+    if (plays === this.device) return;
+    this.device = false;
+    this.stop();
+    this.device = plays;
+    this.ended();
+    for (const each of [this.speed, this.sound, this.whole, this.quiz]) each.disabled = plays;
+    setText(this.patch.about, plays ? "a device plays: no preview" : PREDICTED);
+    this.say(plays ? "A device plays. Space on the time line stops it." : "The device is off.");
   }
 
   /** Begins or ends a play of the icon that is shown. */
@@ -59,7 +72,8 @@ class Player {
 
   /** Ends what plays and what covers the curves; false if nothing did. */
   stop() {
-    const any = this.run.playing || this.wanted !== null || this.reel.open;
+    if (this.device) this.stopDevice();
+    const any = this.device || this.run.playing || this.wanted !== null || this.reel.open;
     this.run.stop();
     this.reel.close();
     this.ended();
@@ -69,7 +83,7 @@ class Player {
   ended() {
     this.timeline.playing = false;
     this.wanted = null;
-    setText(this.play, "▶ Play");
+    setText(this.play, this.device ? "■ Stop the device" : "▶ Play");
   }
 
   /** Asks the kernel for the curves of all icons; from then on it is not needed. */

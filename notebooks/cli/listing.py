@@ -2,12 +2,15 @@
 
 import shlex
 from collections.abc import Sequence
+from importlib import import_module
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import typer
 
 from thermicon.base.files.atomic import OutputError
+from thermicon.base.files.inputs import InputError
+from thermicon.base.words.installing import install
 from thermicon.base.words.number_text import number
 
 from ..files.outputs import check_output
@@ -21,9 +24,11 @@ from .options import CrowdOptions, RigOptions, flag, opt, read_set, write_text
 def list_command(
     rig: RigOptions,
     what: Annotated[
-        Literal["icons", "rigs", "modules", "devices", "formats"] | None,
+        Literal["icons", "rigs", "modules", "devices", "formats", "ports"] | None,
         typer.Argument(
-            metavar="icons|rigs|modules|devices|formats", show_default=False, help="What to list.  [default: all]"
+            metavar="icons|rigs|modules|devices|formats|ports",
+            show_default=False,
+            help="What to list.  [default: all but ports]",
         ),
     ] = None,
     cite: Annotated[
@@ -40,7 +45,10 @@ def list_command(
         ),
     ] = None,
 ) -> None:
-    """List shipped icon sets, rigs, modules, devices and formats of drives; cite them, or copy one to start from."""
+    """List shipped icon sets, rigs, modules, devices and formats of drives; cite them, or copy one to start from.
+
+    `ports` are the serial ports of this computer, on one of which `thermicon play` finds a board.
+    """
     if rig.rig and cite is None:
         raise usage("applies to the paragraph of --cite", "--rig")
     if rig.set and cite is None and copy is None:
@@ -55,8 +63,8 @@ def list_command(
         copy_shipped(*copy, rig.changes)
     else:
         shown = {"icons": show_icons, "rigs": show_rigs, "modules": show_modules, "devices": show_devices,
-                 "formats": show_formats}  # fmt: skip
-        for place, each in enumerate([what] if what else shown):
+                 "formats": show_formats, "ports": show_ports}  # fmt: skip
+        for place, each in enumerate([what] if what else [each for each in shown if each != "ports"]):
             if place:
                 typer.echo("")
             shown[each]()
@@ -184,7 +192,27 @@ def show_devices() -> None:
     tested = f"Tested on hardware: {', '.join(played)}." if played else "None of them has been tested on hardware yet."
     own = "Describe your own device in a .toml file like the shipped ones (--copy), with a source for each number."
     titles = "\n".join(f"{device.name}: {device.title}" for device in devices)
-    show([grid(("device", "driven by", "range", "resolution", "rate"), rows), titles, f"{tested}\n{own}"])
+    live = ", ".join(device.name for device in devices if device.driven_by == "temperatures")
+    lives = f"Plays live: {live}, simulated or on a board of your own (thermicon play; written from documents)."
+    show(
+        [
+            grid(("device", "driven by", "range", "resolution", "rate"), rows),
+            titles,
+            f"{tested}\n{lives}\n{own}",
+        ]
+    )
+
+
+def show_ports() -> None:
+    """Print the serial ports of this computer, with maker and serial number where they have them."""
+    try:
+        comports: Any = import_module("serial.tools.list_ports").comports
+    except ImportError as error:
+        raise InputError(f"ports need pyserial, which is not installed: {install('pyserial')}") from error
+    ports = sorted(comports())
+    rows = [(port.device, port.manufacturer or "–", port.product or "–", port.serial_number or "–") for port in ports]
+    titles = ("port", "maker", "product", "serial number")
+    show([grid(titles, rows) if rows else "no serial port; a board is one once it is plugged in"])
 
 
 def show_formats() -> None:

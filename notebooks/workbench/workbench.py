@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
 from html import escape
 from importlib.resources import files
@@ -12,6 +13,7 @@ from IPython import get_ipython
 
 from thermicon.base.checks.arguments import checked
 from thermicon.base.files.atomic import OutputError
+from thermicon.base.files.inputs import InputError
 from thermicon.circuit import Rig, Trace
 from thermicon.icons import CueErrors, Icon, IconSet, parse
 from thermicon.icons.model.words import nearest
@@ -206,6 +208,7 @@ class Workbench:
         from .design_view import DesignView
         from .document_bar import DocumentBar
         from .export_view import ExportView
+        from .live_panel import LivePanel
         from .set_strip import SetStrip
         from .set_view import SetView
 
@@ -220,9 +223,16 @@ class Workbench:
         self.set_view = ranked = SetView(self._design, show_text, strip.known, lambda: strip.pinned)
         self.export_view = export = ExportView(self._design, self._folder)
         self.bar = bar = DocumentBar(design)
-        design.on_page |= {"save": bar.saved_by_key, "left": bar.take_left, "hello": lambda _: strip.tell(anew=True)}
-        views = [design.box, ranked.box, export.box]
-        tabs = widgets.Tab(views, titles=("Design", "Set", "Export"))
+        self.live = LivePanel(self._to_play, lambda on: design.canvas.send({"type": "device", "plays": on}))
+
+        def greeted(_: object) -> None:
+            strip.tell(anew=True)
+            self.live.tell()
+
+        design.on_page |= {"save": bar.saved_by_key, "left": bar.take_left, "hello": greeted}
+        design.on_page["stop device"] = lambda _: self.live.stop("Stop on the time line")
+        views = [design.box, ranked.box, export.box, self.live.box]
+        tabs = widgets.Tab(views, titles=("Design", "Set", "Export", "Live"))
 
         live: tuple[SetStrip | SetView | ExportView, ...] = (strip, ranked, export)
 
@@ -245,6 +255,13 @@ class Workbench:
         self._design.on_change(changed)
         self.tabs = tabs
         return widgets.VBox([style, bar.box, tabs]).add_class("thermicon")
+
+    def _to_play(self) -> tuple[Sequence[Icon], Sequence[str], Rig]:
+        """The set as it is written, of which the icon that is shown is played, and the rig with its sliders."""
+        icons, scene = self.icons, self._design.scene
+        if scene.icon is None or icons.find(scene.icon) is None:
+            raise InputError("there is no icon to play")
+        return tuple(icons), (scene.icon,), self.rig
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, Any]:
         """The page, with a line and a small picture for where widgets are not shown; the figure where none can be."""

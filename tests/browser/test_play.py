@@ -122,6 +122,29 @@ def reel(bench: Bench, lasts_s: float) -> None:
     bench.frame({"type": "reel", "frames": frames, "why": ""}, *curves(lasts_s), *curves(lasts_s))
 
 
+def test_while_a_device_plays_nothing_is_previewed_and_space_only_stops_it(player: Bench) -> None:
+    page, play = player.page, player.page.locator(".tm-player .tm-button").first
+    press(page, " ")
+    player.frame({"type": "device", "plays": True})
+    assert not page.evaluate(PLAYS), "the preview ends"
+    assert play.inner_text() == "■ Stop the device"
+    assert page.locator(".tm-predicted").inner_text() == "a device plays: no preview"
+    for name in ("Play set", "Quiz"):
+        assert page.get_by_role("button", name=name).is_disabled()
+    player.append("#")  # a message that nobody answers holds nothing up
+    asked = [0]
+    for act in (lambda: press(page, " "), lambda: press(page, "Escape"), play.click):
+        act()
+        asked.append(len(player.sent("stop device")))
+    assert asked == sorted(set(asked)), "each of them asks at once"
+    assert not page.evaluate(PLAYS)
+    player.frame({"type": "device", "plays": False})
+    press(page, "ArrowRight")
+    assert len(player.sent("stop device")) == asked[-1]
+    press(page, " ")
+    assert page.evaluate(PLAYS)
+
+
 def test_a_set_plays_one_icon_after_another_with_their_names(player: Bench) -> None:
     page, title = player.page, player.page.locator(".tm-reel-title")
     page.get_by_role("button", name="Play set").click()

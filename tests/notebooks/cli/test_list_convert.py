@@ -1,5 +1,7 @@
 """``thermicon list`` and ``convert``: shipped files with copies to start from, icons in other forms."""
 
+import re
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +21,22 @@ def test_each_kind_is_listed_within_80_columns(cli: Cli, what: str) -> None:
     assert one in said.stdout
     assert said.stdout in cli("list").stdout
     assert max(len(line) for line in said.stdout.splitlines()) <= 80
+
+
+def test_ports_have_maker_and_number_and_are_listed_when_asked_for(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    from serial.tools import list_ports
+    from serial.tools.list_ports_common import ListPortInfo
+
+    board = ListPortInfo("/dev/ttyACM0")
+    board.manufacturer, board.serial_number = "Arduino", "7553"
+    monkeypatch.setattr(list_ports, "comports", lambda: [board])
+    assert re.search(r"/dev/ttyACM0 +Arduino +– +7553\n", cli("list", "ports").stdout)
+    monkeypatch.setattr(list_ports, "comports", list)
+    assert cli("list", "ports").stdout == "no serial port; a board is one once it is plugged in\n"
+    monkeypatch.setitem(sys.modules, "serial.tools.list_ports", None)
+    said = cli("list", "ports")
+    assert (said.exit_code, "pip install pyserial" in said.stderr) == (1, True)
+    assert "ttyACM0" not in cli("list").stdout
 
 
 def test_the_figures_of_a_module_stand_below_their_names(cli: Cli) -> None:
