@@ -84,6 +84,10 @@ class Steps:
         with self._turn:
             return self._take_step(now_s)
 
+    def is_answered(self, within_s: float) -> bool:
+        """Whether a look that goes on has its answers, or gets them within so many s of a clock on the wall."""
+        return self._look is not None and self._look.done.wait(within_s)
+
     def _begin(self, line: Line, sensors: Sensors, plan: Iterator[float], pause_s: float) -> None:
         """Take a plan on, or refuse it; only one that is taken on changes the line and the sensors."""
         with self._turn:
@@ -91,7 +95,8 @@ class Steps:
                 raise Refused("busy: a rest or a play has not ended; one display plays one drive at a time")
             if self._aborted.is_set():
                 raise Refused("stopped before: find out why, then call reset()")
-            line.open()
+            if line is not self._line or not self.rested:  # else it would forget that it switched off by itself
+                line.open()
             try:
                 self._check_clock(float(self._clock()))
             except Stopped as problem:

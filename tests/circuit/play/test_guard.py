@@ -14,6 +14,21 @@ from thermicon.circuit.play.guard import Guard
 from thermicon.circuit.play.watch import Refused, Stopped
 
 
+def test_a_device_is_opened_before_a_rest_only_which_would_forget_that_it_switched_off(
+    world: World, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened: list[float] = []
+    monkeypatch.setattr(world.line, "open", lambda: opened.append(world.clock.true_s))
+    world.play()
+    world.clock.passes(10.0)
+    world.play()
+    assert len(opened) == 1
+    world.guard.abort()
+    world.guard.reset()
+    world.play()
+    assert len(opened) == 2
+
+
 class TestSupervision:
     """Looks too far apart stop, whoever made them late."""
 
