@@ -30,6 +30,7 @@ MINUTES = {
     "tests/docs": 2.5,
     "tests/icons/language": 1.0,
     "tests/notebooks/cli": 1.0,
+    "tests/notebooks/study": 1.5,
     "tests/notebooks/test_tutorials.py": 1.0,
     "tests/perception/evidence": 8.0,
     "tests/perception/pilot": 5.0,

@@ -16,7 +16,7 @@ FOLDERS = {
     "product": ("base", "icons", "circuit", "perception", "notebooks", "thermicon", "docs", ".ci"),
     "tests": ("tests",),
 }
-CODE = {"product": (".py", ".py.txt"), "tests": (".py", ".toml", ".csv", ".cue", ".c", ".json", ".txt")}
+CODE = {"product": (".py",), "tests": (".py", ".toml", ".csv", ".cue", ".c", ".json", ".txt")}
 """Endings of what counts: tests with their data, but not the reference data of others."""
 BUDGET = tomllib.loads((ROOT / "tests" / "budget.toml").read_text(encoding="utf-8"))
 FILLERS = {"found", "each", "what", "one", "own", "made", "said"}

@@ -32,12 +32,16 @@ def judged(icons: Sequence[Icon], rig: Rig, device: Device, pause_s: float | Non
         raise InputError(f"rig {rig.name} is a thermode, which plays by itself: export in the format tcs2-serial")
     if device.driven_by != "temperatures":
         raise InputError(f"{device.name} takes no set-points; live play needs a temperature controller")
+    return export(icons, with_sensors(rig), device, "setpoint-csv", pause_s=pause_s, step=step)
+
+
+def with_sensors(rig: Rig) -> Rig:
+    """The rig with the sensors of a device as probes, by which a log names them."""
     document: dict[str, Any] = json.loads(rig.document)
     lag_s = SENSOR_LAG_S if rig.controller is None else rig.controller.lag_s
     probes = [probe for probe in document.get("probe", []) if probe["name"] not in SENSORS]
     probes += [{"name": name, "place": "display", "lag_s": lag_s} for name in SENSORS]
-    on = rig_of({**document, "probe": probes}, f"rig {rig.name}")
-    return export(icons, on, device, "setpoint-csv", pause_s=pause_s, step=step)
+    return rig_of({**document, "probe": probes}, f"rig {rig.name}")
 
 
 def exported_before(folder: Path, rig: Rig | None, pause_s: float | None, step: Progress = None) -> Export:

@@ -251,7 +251,7 @@ def _port(name: str) -> Any:
     try:
         serial: Any = import_module("serial")
     except ImportError:
-        raise Refused('a board needs pyserial, which is not installed: pip install "thermicon[live]"') from None
+        raise Refused("a board needs pyserial, which is not installed: pip install pyserial") from None
     try:
         port = serial.Serial(name, baudrate=BAUD, timeout=0, write_timeout=SILENT_S, exclusive=True)
     except serial.SerialException as problem:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from . import drives as drives_module
 from . import function, guard, line, look, ni, steps, tcs2, watch
-from .watch import Numbers
+from .watch import Numbers, Refused, Stopped
 
 HEAD = '''"""Plays exported icons {on}. Made by thermicon; never played on a device.
 
@@ -195,6 +195,16 @@ LINES: dict[str, tuple[ModuleType, str]] = {"ni": (ni, NI), "function": (functio
 COURSE_EVERY_S = 0.1
 
 
+BOARD_HEAD = '''"""A microcontroller that plays exported icons by itself. Made by thermicon; never tried on one."""
+
+from __future__ import annotations
+
+{imports}
+
+
+'''
+
+
 class JudgedDrive(NamedTuple):
     """A drive file that a script plays: its name, SHA-256, least and greatest command, predicted display in °C."""
 
@@ -213,13 +223,11 @@ def script(
     texts = [
         _parted(inspect.getsource(each), names) for each in (line, watch, look, steps, guard, drives_module, module)
     ]
-    imports = [f"import {name}" for name, of in sorted(names.items()) if not of]
-    imports += [f"from {name} import {', '.join(sorted(of))}" for name, of in sorted(names.items()) if of]
     top = {"ni": f'CHANNEL = "Dev1/ao0"\nOFF_V = {off_V!r}\nV_PER_A = {V_per_A!r}\n', "tcs2": 'PORT = "COM3"\n'}
     held = (numbers.held_low_C, numbers.held_high_C, numbers.held_s) if numbers.held_s is not None else (None,) * 3
     head = HEAD.format(
         on=on,
-        imports="\n".join(imports),
+        imports=_imports(names),
         held=", ".join(map(repr, held)),
         digests=_table({each.file: repr(each.sha256) for each in drives}),
         commands=_table({each.file: repr(each.commands) for each in drives}),
@@ -228,6 +236,23 @@ def script(
         **numbers._asdict(),
     )
     return "\n\n".join([head + top.get(kind, ""), *texts]) + TAIL + functions
+
+
+def board_script() -> str:
+    """The line of a board as a module of its own."""
+    from . import board, logged_line
+
+    names: dict[str, set[str]] = {}
+    texts = [_parted(inspect.getsource(each), names) for each in (line, logged_line, board)]
+    texts = [*map(inspect.getsource, (Refused, Stopped)), *texts]
+    return BOARD_HEAD.format(imports=_imports(names)) + "\n\n".join(texts)
+
+
+def _imports(names: Mapping[str, set[str]]) -> str:
+    """The imports of modules, and of names from them."""
+    whole = [f"import {name}" for name, of in sorted(names.items()) if not of]
+    parts = [f"from {name} import {', '.join(sorted(of))}" for name, of in sorted(names.items()) if of]
+    return "\n".join(whole + parts)
 
 
 def _parted(source: str, names: dict[str, set[str]]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import re
 import string
 from collections.abc import Mapping
 from dataclasses import replace
@@ -14,15 +15,23 @@ from typing import Any
 
 from thermicon.circuit.delivery.formats.tables import has_voltage
 from thermicon.circuit.delivery.pack import sidecar_name
+from thermicon.circuit.live.ready import with_sensors
+from thermicon.circuit.play.script import board_script
 from thermicon.circuit.rig.settings import toml_text
 
 from ..figures.session_figure import session_figure
 from .build import FELT, UNFELT, Plan, levels_K, plays_of
+from .live_facts import live_facts
 from .schedule import Pace, events_description, json_bytes, planned_events, planned_plays, table
 from .study_file import labels_of
 
-SCRIPTS = ("run_study.py", "study_answers.py", "study_bench.py", "study_simulated.py", "study_questplus.py")
-"""The script and what it imports; the last one only for a threshold."""
+SCRIPT = "run_study.py"
+MODULES = ("study_options.py", "study_run.py", "study_answers.py", "study_bench.py", "study_simulated.py")
+"""The script of a study and what it imports."""
+
+OWN, FIRST_OWN = re.compile(r"^( *)from \.", re.MULTILINE), re.compile(r"^(?=from \.)", re.MULTILINE)
+BOARD = re.compile(r"from thermicon\.circuit\.play\.board\b")
+FROM_HERE = "sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))  # wherever it is started from\n\n"
 
 CONDITIONS = ("participant", "trial", "block", "icon", "drive_file", "sidecar_file", "duration_s", "marker")
 LEVELS = ("icon", "change_K", "drive_file", "sidecar_file", "duration_s", "marker")
@@ -36,7 +45,7 @@ CATCH, MANIFEST = "nothing", "study.json"
 def files_of(plan: Plan) -> dict[str, bytes]:
     """Return the bytes of every file of a study, by name; equal studies give equal bytes."""
     materials, ready = plan.materials, plan.judged.ready
-    study = materials.study
+    study, rig = materials.study, materials.rig
     names = list(plan.durations_s)
     markers = {name: place for place, name in enumerate(names, 1)}
     stimuli = {one.delivery.icon.name: ready.form.file_name(one.delivery) for one in ready.prepared}
@@ -47,9 +56,9 @@ def files_of(plan: Plan) -> dict[str, bytes]:
     files = {
         "study.toml": materials.text.encode("utf-8"),
         "icons.cue": _icons(plan).encode("utf-8"),
-        "rig.toml": toml_text(json.loads(materials.rig.document)).encode("utf-8"),
+        "rig.toml": toml_text(json.loads((with_sensors(rig) if facts["live"] else rig).document)).encode("utf-8"),
         **ready.files,
-        **{name: _shipped(f"{name}.txt") for name in SCRIPTS if study.threshold or name != SCRIPTS[-1]},
+        **_scripts(study.threshold is not None, facts["live"] is not None),
         "participants.tsv": table(
             ["participant_id"], [{"participant_id": f"sub-{label}"} for label in labels_of(study)], "\t"
         ),
@@ -58,7 +67,7 @@ def files_of(plan: Plan) -> dict[str, bytes]:
             | {"GeneratedBy": [{"Name": "thermicon", "Version": version("thermicon")}]}
         ),
         f"task-{study.name}_events.json": events_description(title, markers, _texts(plan)),
-        "README.txt": _readme(plan).encode("utf-8"),
+        "README.txt": _readme(plan, facts["live"] is not None).encode("utf-8"),
         **_timeline(plan),
     }
     if study.threshold is not None:
@@ -132,6 +141,7 @@ def study_facts(plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, in
         "answer_s": study.timing.answer_s,
         "planned_s": planned_s(plan),
         "levels": dict(zip(markers, levels_K(threshold), strict=True)) if threshold else None,
+        "live": live_facts(judged.ready),
         "threshold": None if threshold is None else threshold.model_dump(),
         "sessions": {
             label: {key: value for key, value in session.to_dict().items() if key not in left_out}
@@ -169,6 +179,18 @@ def _drive(name: str, plan: Plan, stimuli: Mapping[str, str], markers: Mapping[s
     }
 
 
+def _scripts(has_threshold: bool, is_live: bool) -> dict[str, bytes]:
+    """The source of the player as modules of one folder, which import one another by their names."""
+    names = [SCRIPT, *MODULES] + ["study_questplus.py"] * has_threshold + ["study_live.py"] * is_live
+    folder = resources.files("thermicon.notebooks.study").joinpath("player")
+    texts = {name: folder.joinpath(name).read_text(encoding="utf-8") for name in names}
+    texts[SCRIPT] = FIRST_OWN.sub(FROM_HERE, texts[SCRIPT], count=1)
+    texts = {name: OWN.sub(r"\1from ", BOARD.sub("from study_board", text)) for name, text in texts.items()}
+    if is_live:
+        texts["study_board.py"] = board_script()
+    return {name: text.encode("utf-8") for name, text in texts.items()}
+
+
 def _shipped(name: str) -> bytes:
     return resources.files("thermicon.notebooks").joinpath("templates", name).read_bytes()
 
@@ -193,14 +215,20 @@ def _timeline(plan: Plan) -> dict[str, bytes]:
     return {"timeline.png": content.getvalue()}
 
 
-def _readme(plan: Plan) -> str:
+def _readme(plan: Plan, is_live: bool) -> str:
     """Instructions for the study, in a few lines of plain text."""
     study = plan.materials.study
+    compile_it = (
+        f"thermicon export icons.cue --rig rig.toml --device {study.stimuli.device} --to c-array "
+        f"--pause {plan.judged.gap.gap_s:g} -o board\n"
+        f"                           python run_study.py --participant {labels_of(study)[0]} --device board --port COM3"
+    )
     compare = "thermicon pilot icons.cue --answers data/answers.csv --rig rig.toml"
     return string.Template(_shipped("study_readme.txt").decode("utf-8")).substitute(
         title=study.title or study.name,
         version=version("thermicon"),
         sha256=plan.materials.sha256,
         label=labels_of(study)[0],
+        live="" if not is_live else f"For a board of yours:      {compile_it}\n",
         compare="" if study.threshold else f"Compare with predictions:  {compare}\n",
     )

@@ -54,8 +54,8 @@ def test_a_simulated_run_writes_answers_and_events(quick: Path, done: Path) -> N
 
 
 def test_the_scripts_need_neither_thermicon_nor_psychopy_to_be_simulated(quick: Path) -> None:
-    own = {"study_answers", "study_bench"}
-    for name in ("run_study.py", "study_answers.py", "study_bench.py", "study_simulated.py"):
+    own = {"study_answers", "study_bench", "study_options", "study_run"}
+    for name in ("run_study.py", *(f"{name}.py" for name in sorted(own)), "study_simulated.py"):
         lines = (quick / name).read_text(encoding="utf-8").splitlines()
         imported = {line.split()[1].partition(".")[0] for line in lines if line.startswith(("import ", "from "))}
         assert imported <= sys.stdlib_module_names | own

@@ -29,6 +29,11 @@ def module(quick: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     return importlib.import_module("study_answers")
 
 
+def files(module: Any, folder: Path) -> Any:
+    """The tables of the small study in a folder."""
+    return module.StudyFiles(folder, module.read_study())
+
+
 def simulate(quick: Path, folder: Path, *arguments: object) -> subprocess.CompletedProcess[str]:
     return run_script(quick, folder, "--participant", "A", "--simulate", *arguments)
 
@@ -111,7 +116,7 @@ def test_a_participant_has_one_run_in_a_folder_and_a_lock_without_a_run_stops_no
     module: Any, quick: Path, tmp_path: Path
 ) -> None:
     lock = tmp_path / "sub-A_task-quick.lock"
-    with module.claimed(tmp_path, "A"):
+    with files(module, tmp_path).claimed("A"):
         assert lock.stat().st_size == 0, "what tried whether there is room is gone"
         second = simulate(quick, tmp_path)
         assert second.returncode == 1 and second.stderr.strip() == (
@@ -180,7 +185,7 @@ def test_a_table_that_cannot_be_written_to_is_told_at_the_start(
 
     monkeypatch.setattr(Path, "open", protected)
     told = pytest.raises(module.NoDisk, match=r"answers\.csv: Permission denied; make room there, allow writing")
-    with told, module.claimed(tmp_path, "A"):
+    with told, files(module, tmp_path).claimed("A"):
         pytest.fail("it ran")
 
 
@@ -198,7 +203,7 @@ def test_a_row_is_whole_where_the_system_takes_it_in_parts_and_a_file_is_as_it_w
 ) -> None:
     writes = os.write
     monkeypatch.setattr(module.os, "write", lambda file, content: writes(file, content[:3]))
-    module.Table(tmp_path / ANSWERS, module.ANSWERS).add({"participant": "A", "trial": 1, "presented": "dip"})
+    module.DurableTable(tmp_path / ANSWERS, module.ANSWERS).add({"participant": "A", "trial": 1, "presented": "dip"})
     assert (tmp_path / ANSWERS).read_text(encoding="utf-8") == f"{HEADER}A,1,dip,n/a,n/a\n"
 
     def full(file: int, content: bytes) -> int:
@@ -213,11 +218,11 @@ def test_a_row_is_whole_where_the_system_takes_it_in_parts_and_a_file_is_as_it_w
 
 def test_each_torn_row_has_a_file_of_its_own(module: Any, tmp_path: Path) -> None:
     for number, torn in ((1, "A,2,dip"), (2, "A,3,gl")):
-        module.given_answers(tmp_path, "A")
-        module.Table(tmp_path / ANSWERS, module.ANSWERS).add({"participant": "A", "trial": number})
+        files(module, tmp_path).given_answers("A")
+        module.DurableTable(tmp_path / ANSWERS, module.ANSWERS).add({"participant": "A", "trial": number})
         with (tmp_path / ANSWERS).open("a", encoding="utf-8") as file:
             file.write(torn)
-    assert list(module.given_answers(tmp_path, "A")) == [1, 2]
+    assert list(files(module, tmp_path).given_answers("A")) == [1, 2]
     kept = [tmp_path / f"sub-A_task-quick_answers.torn-{number}.csv" for number in (1, 2)]
     assert [path.read_text(encoding="utf-8") for path in kept] == ["A,2,dip", "A,3,gl"]
     assert len(list(tmp_path.iterdir())) == 3, "no draft is left"
@@ -247,14 +252,16 @@ def test_only_whole_rows_are_answers(
     content, trials, damaged = TABLES[name]
     path = tmp_path / ANSWERS
     path.write_bytes(content.encode("utf-8"))
-    rows, torn = module.read_answers(tmp_path, "A")
+    rows, torn = files(module, tmp_path).read_answers("A")
     assert ([row["trial"] for row in rows], len(torn)) == (trials, damaged)
-    assert list(module.given_answers(tmp_path, "A")) == [int(trial) for trial in trials]
+    assert list(files(module, tmp_path).given_answers("A")) == [int(trial) for trial in trials]
     assert (f"{damaged} line" in capsys.readouterr().out) == (damaged > 0)
     assert path.with_name("sub-A_task-quick_answers.torn-1.csv").exists() == (damaged > 0)
-    module.Table(path, module.ANSWERS).add({"participant": "A", "trial": 8, "presented": "dip", "responded": "dip"})
+    module.DurableTable(path, module.ANSWERS).add(
+        {"participant": "A", "trial": 8, "presented": "dip", "responded": "dip"}
+    )
     assert path.read_text("utf-8-sig").splitlines()[0] == HEADER.strip(), "the header comes before the first row"
-    assert [row["trial"] for row in module.read_answers(tmp_path, "A")[0]] == [*trials, "8"]
+    assert [row["trial"] for row in files(module, tmp_path).read_answers("A")[0]] == [*trials, "8"]
 
 
 def test_a_table_of_something_else_is_refused_and_kept(module: Any, quick: Path, tmp_path: Path) -> None:
@@ -285,7 +292,7 @@ def test_a_file_that_cannot_be_locked_is_told_and_not_taken_for_a_second_run(
 
     monkeypatch.setitem(sys.modules, "fcntl", types.SimpleNamespace(flock=no_locks, LOCK_EX=2, LOCK_NB=4))
     told = pytest.raises(module.NoDisk, match=r"No locks available; .* or give another --output")
-    with told, module.claimed(tmp_path, "A"):
+    with told, files(module, tmp_path).claimed("A"):
         pytest.fail("it ran")
 
 
@@ -304,7 +311,7 @@ def test_on_windows_a_byte_of_the_file_is_locked(module: Any, tmp_path: Path, mo
     monkeypatch.setitem(sys.modules, "msvcrt", types.SimpleNamespace(locking=locking, LK_NBLCK=2))
     (tmp_path / "sub-A_task-quick.lock").write_bytes(b"left by a run that was killed")
     refused = pytest.raises(SystemExit, match="participant A runs already")
-    with module.claimed(tmp_path, "A"), refused, module.claimed(tmp_path, "A"):
+    with files(module, tmp_path).claimed("A"), refused, files(module, tmp_path).claimed("A"):
         pytest.fail("it ran")
 
 

@@ -252,6 +252,7 @@ def test_a_trial_begins_only_after_its_commands_were_sent(
     bench_of(quick, monkeypatch)
     monkeypatch.delitem(sys.modules, "study_answers", raising=False)
     monkeypatch.delitem(sys.modules, "run_study", raising=False)
+    monkeypatch.delitem(sys.modules, "study_run", raising=False)
     study: Any = importlib.import_module("run_study")
     calls: list[str] = []
 
@@ -288,7 +289,8 @@ def test_a_trial_begins_only_after_its_commands_were_sent(
         def show(self, text: str) -> None: ...
         def expect(self, presented: str, choices: dict[str, str]) -> None: ...
 
-    run = study.Run("A", Screen(), SlowLine(), lambda code: None, tmp_path, {})
+    files = study.StudyFiles(tmp_path, study.read_study())
+    run = study.ParticipantRun(files, "A", Screen(), SlowLine(), lambda code: None, {})
     run.free_s = 20.0
     row = next(row for row in rows_of(quick / "sub-A_task-quick_conditions.csv") if row["trial"] == "1")
     assert run.trial(row) == "dip"
