@@ -244,6 +244,8 @@ def _read(text: str, where: str) -> Rig:
 
 def rig_of(document: Mapping[str, Any], where: str) -> Rig:
     """The rig of a document, as its file has it; raises RigError with every fault, on `where`."""
+    if isinstance(document.get("element"), list):
+        raise RigError(f"{where}: a layout of several elements cannot be taken yet; give the rig file of one element")
     table = read_table(document, where)
     try:
         return _assemble(table, json.dumps(document, sort_keys=True, ensure_ascii=False))

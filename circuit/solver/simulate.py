@@ -9,6 +9,7 @@ from thermicon.base.numbers.arrays import Array
 from thermicon.base.words.number_text import significant
 from thermicon.icons import Icon
 
+from ..rig.layout import AnyLayout, Layout
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import AnyRig, Rig
 from ..rig.rigfile import RigError
@@ -44,7 +45,7 @@ def rows_until(end_s: float, rate_Hz: float) -> Array:
 
 
 @checked
-def simulate(icon: Icon, rig: AnyRig = None, *, rate_Hz: float = 100.0, tail_s: float = 0.0) -> Trace:
+def simulate(icon: Icon, rig: AnyLayout = None, *, rate_Hz: float = 100.0, tail_s: float = 0.0) -> Trace:
     """Simulate a cue on a rig: find the current that produces it, then run the circuit with that current.
 
     A thermode needs no current: its display follows the cue within its own limits, and the skin follows the display.
@@ -54,7 +55,7 @@ def simulate(icon: Icon, rig: AnyRig = None, *, rate_Hz: float = 100.0, tail_s: 
     icon
         The cue.
     rig
-        The rig, or the name or file of one; None: the shipped rig of the icons' site, else thenar.
+        The rig, or the name or file of one, or a layout of one; None: the shipped rig of the icons' site, else thenar.
     rate_Hz
         Rows of the trace per second.
     tail_s
@@ -78,7 +79,7 @@ def simulate(icon: Icon, rig: AnyRig = None, *, rate_Hz: float = 100.0, tail_s: 
     Trace('cooling-step' on thenar, 801 rows, 8 s, skin 26.92 … 32.04 °C, -0.48 … 1.11 A)
 
     """
-    rig = Rig.of(rig, icon.context.site)
+    rig = Layout.of(rig, icon.context.site).alone
     if not (0 <= tail_s < np.inf):
         raise RigError(f"a tail of {tail_s:g} s is not possible; it must be 0 or more")
     end = duration_s(icon, rig) + tail_s
