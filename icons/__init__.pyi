@@ -4,6 +4,7 @@ from .files.shipped import read_cue as read_cue, load_library as load_library, l
 from .model.icon import Icon as Icon
 from .model.iconset import IconSet as IconSet
 from .model.family import Family as Family
+from .model.spatial import SpatialIcon as SpatialIcon
 from .model.errors import CueErrors as CueErrors
 from .language.format_text import format_text as format_text
 from .files.exchange import to_json as to_json

@@ -24,18 +24,37 @@ _STATEMENTS = (
     "pulse",
     *WAVES,
     "repeat",
+    "on",
+    "together",
+    "along",
     "play",
     "total",
     "to",
 )
 VOCABULARY: dict[str, tuple[str, ...]] = {
     "file": ("cue", "set", "icon"),
-    "set": ("site", "control", "baseline", *_KEYS),
+    "set": ("site", "control", "baseline", "elements", *_KEYS),
     "icon": _STATEMENTS,
     "repeat": _STATEMENTS,
     "header": _KEYS,
 }
-CLAUSES = ("by", "to", "at", "over", "for", "every", "in", "step", "starting", "cut", "most", "least", "up", "down")
+CLAUSES = (
+    "by",
+    "to",
+    "at",
+    "over",
+    "for",
+    "every",
+    "in",
+    "step",
+    "starting",
+    "cut",
+    "most",
+    "least",
+    "up",
+    "down",
+    "all",
+)
 """Words within a statement, after the first."""
 CONTROLS: tuple[str, ...] = get_args(Control)
 
@@ -47,7 +66,6 @@ def _meant(name: str) -> dict[str, str]:
     return {written: meant for meant, listed in _TABLES[name].items() for written in listed.split()}
 
 
-NOT_YET: dict[str, str] = _TABLES["not_yet"]
 EXAMPLES: dict[str, str] = _TABLES["examples"]
 """Examples of kinds of quantity and of statements."""
 WORD_ALIASES, STARTS, BOUNDS, NUMBER_WORDS = map(_meant, ("words", "starts", "bounds", "numbers"))

@@ -159,7 +159,7 @@ def show_icons() -> None:
 
     for position, name in enumerate(library_names()):
         icons, rows = load_library(name), []
-        for icon in icons.entries:
+        for icon in (*icons.entries, *icons.spatial):
             tags = f"({', '.join(icon.metadata.tags)})" if icon.metadata.tags else ""
             count = f", {len(icon):,} icons" if isinstance(icon, Family) else ""
             rows.append((f"  {icon.name}{count}", icon.metadata.means or "", tags))

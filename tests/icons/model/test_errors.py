@@ -11,6 +11,7 @@ from thermicon.icons.model.errors import CueError, codes
 FRAMES = {
     "statement": "cue 1\nicon x {{\n{}\n}}",
     "family": "cue 1\nicon {} {{\n{}\n  hold for 1 s\n}}",
+    "spatial": "cue 1\nset {{ elements left, right }}\nicon x {{\n{}\n}}",
     "file": "{}",
 }
 

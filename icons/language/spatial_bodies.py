@@ -1,0 +1,222 @@
+"""Assembly of what an icon plays on which display elements."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from ..model.spatial import Along, On, Part, Together
+from ..model.statements import Broken, Statement
+from ..model.words import nearest
+from .build import Builder, Place, rule_of, span
+from .failed_statement import short
+from .source import Patch
+
+BLOCKS = ("on", "along", "together")
+_EVERY = ("all", "both", "each", "every", "everything", "everywhere")
+_WRAPPED = "elements play statements: on all { ... }, or a name in place of all"
+
+
+class Scope(Protocol):
+    """What reads the statements of a body."""
+
+    builder: Builder
+    broken: bool
+
+    def body(self, parts: Iterable[Any], path: tuple[int, ...]) -> tuple[Statement | Broken, ...]:
+        """Return statements in order."""
+
+    def not_on_elements(self, word: str, place: Place) -> None:
+        """Report a statement that elements cannot take."""
+
+    def period(self, part: Any) -> float:
+        """Return the step from one element to the next in s; NaN, with a finding, when it is not valid."""
+
+
+@dataclass(frozen=True, slots=True)
+class BodyDraft:
+    """A body as written, the elements that play it, and their step in s where one begins after the other."""
+
+    names: tuple[str, ...]
+    body: tuple[Statement | Broken, ...]
+    place: Place
+    every_s: float | None = None
+
+    def part(self) -> On | Along:
+        """The part of an icon; its statements were all read."""
+        body = tuple(each for each in self.body if not isinstance(each, Broken))
+        return On(self.names, body) if self.every_s is None else Along(self.names, self.every_s, body)
+
+
+@dataclass(frozen=True, slots=True)
+class PartDraft:
+    """Bodies that begin at one time, in ``together`` or alone."""
+
+    bodies: tuple[BodyDraft, ...]
+    together: bool
+
+    def part(self) -> Part:
+        """The part of an icon."""
+        made = tuple(body.part() for body in self.bodies)
+        return Together(made) if self.together else made[0]
+
+
+def spatial_parts(scope: Scope, trees: Sequence[Any], elements: tuple[str, ...]) -> tuple[PartDraft, ...]:
+    """Return the parts of an icon in a set with elements, with findings for what is not on elements."""
+    return _Spatial(scope, elements).parts(trees)
+
+
+@dataclass(slots=True)
+class _Spatial:
+    scope: Scope
+    elements: tuple[str, ...]
+
+    def parts(self, trees: Sequence[Any]) -> tuple[PartDraft, ...]:
+        found: list[PartDraft] = []
+        loose: list[Any] = []
+        for tree in trees:
+            rule = rule_of(tree)
+            if rule not in BLOCKS and not _unread(tree):
+                loose.append(tree)
+                continue
+            self.outside(loose)
+            loose = []
+            self.scope.broken |= not rule
+            if rule == "together":
+                found.append(self.together(tree))
+            elif rule in BLOCKS:
+                body = self.body(tree)
+                found += [PartDraft((body,), together=False)] if body else []
+        self.outside(loose)
+        return tuple(found)
+
+    def outside(self, trees: Sequence[Any]) -> None:
+        """Report statements in a row that stand outside of a block."""
+        if not trees:
+            return
+        builder = self.scope.builder
+        self.scope.broken = True
+        (start, _), (_, end) = span(trees[0]), span(trees[-1])
+        text = builder.source.text[start:end]
+        if inner := next(filter(None, map(_block_in, trees)), None):
+            what = f'"{rule_of(inner)}" stands inside "repeat"'
+            help = 'put "repeat" inside of it: on left { repeat 3 { ... } }'
+            builder.add("E237", _word(inner), what, help)
+            return
+        if rule_of(trees[0]) == "play":
+            self.scope.not_on_elements("play", span(trees[0]))
+            return
+        if rule_of(trees[0]) == "total":
+            self.scope.not_on_elements("total", span(trees[0]))
+            self.outside(trees[1:])
+            return
+        what = f'"{short(text.split(maxsplit=1)[0])}" stands outside of "on", in a set with elements'
+        builder.add("E233", span(trees[0]), what, _WRAPPED, Patch(start, end, f"on all {{ {text} }}"))
+
+    def together(self, tree: Any) -> PartDraft:
+        """Return parts that begin at one time; each element plays in one of them."""
+        builder, bodies = self.scope.builder, list[BodyDraft]()
+        parts = [part for part in tree.children if rule_of(part)]
+        self.scope.broken |= len(parts) < len(tree.children)
+        if not tree.children:
+            what = 'there is nothing between the braces of "together"'
+            builder.add("E217", span(tree), what, "put two or more of: on left { ... }")
+            self.scope.broken = True
+        stray = next((part for part in parts if rule_of(part) not in BLOCKS), None)
+        if stray is not None:
+            what = 'only "on" and "along" stand in "together"'
+            builder.add("E237", span(stray), what, _WRAPPED)
+        first: dict[str, Place] = {}
+        for part in parts:
+            self.scope.broken |= rule_of(part) not in ("on", "along")
+            if rule_of(part) == "together":
+                what, help = '"together" stands inside "together"', "put its parts directly into the outer one"
+                builder.add("E237", _word(part), what, help)
+            elif rule_of(part) in BLOCKS and (body := self.body(part)):
+                bodies.append(body)
+                for name in body.names:
+                    if name in first:
+                        line, _ = builder.source.place(first[name][0])
+                        what = f"{name} plays since line {line} already, at the same time"
+                        help = 'an element plays one thing at a time: put this behind the end of "together"'
+                        builder.add("E236", _word(part), what, help)
+                        self.scope.broken = True
+                    first.setdefault(name, span(part))
+        return PartDraft(tuple(bodies), together=True)
+
+    def body(self, tree: Any) -> BodyDraft | None:
+        """Return what some elements play; None, with findings, when its head could not be read."""
+        head, *rest = tree.children
+        builder, place = self.scope.builder, span(tree)
+        names = self.names(head) if rule_of(head) == "names" else None
+        every = None
+        if names is not None and rule_of(tree) == "along":
+            every = self.scope.period(rest.pop(0))
+            if len(names) == 1 and every == every:
+                what = f'"along" goes from one element to the next, and {names[0]} is one'
+                brace = builder.source.text.index("{", place[0])
+                help = "name two or more elements, or write: on NAME { ... }"
+                builder.add("E238", span(head), what, help, Patch(place[0], brace, f"on {names[0]} "))
+        elif rule_of(head) == "names" and rule_of(tree) == "along":
+            rest = rest[1:]
+        statements = self.scope.body(rest, ())
+        if not statements and rule_of(head):
+            what = f'there is nothing between the braces of "{rule_of(tree)}"'
+            builder.add("E217", place, what, "put the statements that these elements play between them")
+        if names is None or every != every or not statements or (every is not None and len(names) < 2):
+            self.scope.broken = True
+            return None
+        if rule_of(tree) == "on":
+            names = tuple(name for name in self.elements if name in names)
+        return BodyDraft(names, statements, place, every)
+
+    def names(self, tree: Any) -> tuple[str, ...] | None:
+        """Return the elements that a list names, ranges of them in the order of the set or against it."""
+        found: list[str] = []
+        builder, before, sound = self.scope.builder, span(tree)[0], True
+        for part in tree.children:
+            if not rule_of(part):
+                return self.elements
+            places = [self.place(token) for token in part.children]
+            known = [place for place in places if place is not None]
+            sound &= len(known) == len(places)
+            if len(known) == len(places):
+                first, last = known[0], known[-1]
+                way = 1 if last >= first else -1
+                again = [name for name in self.elements[first::way][: abs(last - first) + 1] if name in found]
+                if again:
+                    cure = Patch(before, span(part)[1], "") if len(known) == 1 else None
+                    what = f"{again[0]} is named already"
+                    builder.add("E236", span(part), what, "name each element once", *([cure] if cure else []))
+                    sound = False
+                found += self.elements[first::way][: abs(last - first) + 1]
+            before = span(part)[1]
+        return tuple(found) if sound else None
+
+    def place(self, token: Any) -> int | None:
+        """Return which element a name means; None, with a finding, when it means none."""
+        if str(token) in self.elements:
+            return self.elements.index(str(token))
+        builder, parts = self.scope.builder, str(token).split("-")
+        close: str | None = ", ".join(parts) if set(parts) <= set(self.elements) else None
+        close = close or ("all" if str(token).casefold() in _EVERY else nearest(str(token), self.elements))
+        cures = (Patch(*span(token), close),) if close else ()
+        what = f'"{short(token)}" is not an element of this set'
+        builder.add("E235", span(token), what, f"its elements are: {', '.join(self.elements)}", *cures)
+        return None
+
+
+def _unread(tree: Any) -> bool:
+    """Whether this stands for a statement, or the head of a block, that could not be read and was reported."""
+    return not rule_of(tree) or (rule_of(tree) == "repeat" and getattr(tree.children[0], "type", "") == "BROKEN")
+
+
+def _block_in(tree: Any) -> Any:
+    """The first block for elements inside of a statement, or None."""
+    inside = [part for part in getattr(tree, "children", ()) if rule_of(part)]
+    return next((found for part in inside if (found := part if rule_of(part) in BLOCKS else _block_in(part))), None)
+
+
+def _word(tree: Any) -> Place:
+    """Where the first word of a block stands."""
+    start, _ = span(tree)
+    return start, start + len(rule_of(tree)) if rule_of(tree) in BLOCKS else span(tree)[1]
