@@ -14,7 +14,7 @@ from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.members import MOST_EFFORT, MOST_FAILING, FailedMember, MemberErrors, effort
 from ..model.parameter import path_of, statement_at
-from ..model.spatial import SpatialIcon
+from ..model.spatial import SpatialIcon, bodies_of
 from ..model.statements import Broken, Repeat, Return, Statement
 from ..model.units import Control, exact
 from ..model.words import CONTROLS, nearest
@@ -278,7 +278,7 @@ class _Assembler:
             what = "a family in a set with elements is not in this version"
             self.builder.add("E120", draft.place, what, "write each of its icons out")
         rest = self.rest()
-        for body in (body for part in draft.parts for body in part.bodies):
+        for body in bodies_of(draft.parts):
             self.corners += corner_count(body.body) * len(body.names)
             self.returns(body.body)
             course = survey(body.body, cast(Control, self.control), rest)
@@ -293,8 +293,7 @@ class _Assembler:
         if len(self.builder.findings) > before or not sound or self.corners > MOST_CORNERS_A_FILE:
             return
         try:
-            parts = tuple(part.part() for part in draft.parts)
-            self.spatial.append(SpatialIcon(cast(str, draft.name), parts, self.context(), draft.metadata))
+            self.spatial.append(SpatialIcon(cast(str, draft.name), draft.parts, self.context(), draft.metadata))
         except ValueError as wrong:
             what, _, help = str(wrong).removeprefix(f"icon {draft.name} ").partition("; ")
             self.builder.add("E221", draft.place, f"this icon {what}", help)

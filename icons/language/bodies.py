@@ -8,6 +8,7 @@ from ..model.context import Metadata
 from ..model.icon import Icon
 from ..model.members import HOLE
 from ..model.parameter import Path, Slot, value_fault
+from ..model.spatial import Part
 from ..model.statements import (
     Bound,
     Broken,
@@ -32,7 +33,7 @@ from ..model.words import nearest
 from .build import Builder, FamilyParameters, Place, parameters_of, rule_of, span
 from .failed_statement import short
 from .source import Patch
-from .spatial_bodies import BLOCKS, PartDraft, spatial_parts
+from .spatial_bodies import BLOCKS, spatial_parts
 
 _USES: dict[str, tuple[Kind, ...]] = {
     "by_use": ("change", "current"),
@@ -68,7 +69,7 @@ class IconDraft:
     body: tuple[Statement | Broken, ...]
     over: FamilyParameters | None = None
     slots: tuple[Slot, ...] = ()
-    parts: tuple[PartDraft, ...] = ()
+    parts: tuple[Part, ...] = ()
     unread: bool = False
 
 
@@ -83,7 +84,7 @@ def icon_draft(builder: Builder, tree: Any, resolve: Resolve, elements: tuple[st
     listed = [part for part in parts if rule_of(part) == "parameters"]
     place = span(head) if name else span(tree)
     over = parameters_of(builder, listed[0]) if listed else None
-    scope = _Scope(builder, resolve, over, known=name is not None, elements=elements)
+    scope = Scope(builder, resolve, over, known=name is not None, elements=elements)
     rows = [part for part in parts if rule_of(part) not in ("metadata", "parameters")]
     spatial = spatial_parts(scope, rows, elements) if elements else ()
     body = () if elements else scope.body(rows, ())
@@ -97,7 +98,9 @@ def icon_draft(builder: Builder, tree: Any, resolve: Resolve, elements: tuple[st
 
 
 @dataclass(slots=True)
-class _Scope:
+class Scope:
+    """Reads the bodies of one icon."""
+
     builder: Builder
     resolve: Resolve
     over: FamilyParameters | None
@@ -115,22 +118,18 @@ class _Scope:
     def statement(self, tree: Any, path: Path) -> Statement | Broken:
         """Return one statement, and remember the places of its parts."""
         builder, place = self.builder, span(tree)
-        made: Statement | Broken | None
+        made: Statement | Broken | None = None
         if rule_of(tree) == "repeat":
             made = self.repeat(tree, path)
         elif rule_of(tree) in BLOCKS:
-            made = None
             self.block(rule_of(tree), (place[0], place[0] + len(rule_of(tree))))
         elif self.elements and rule_of(tree) in ("play", "total"):
-            made = None
             self.not_on_elements(rule_of(tree), place)
         elif rule_of(tree) == "play":
             icon = self.resolve(str(tree.children[0]), span(tree.children[0]))
             made = Play(icon, builder.at(place)) if icon else None
         elif rule_of(tree):
             made = self.leaf(tree, path)
-        else:
-            made = None
         self.broken |= made is None
         made = Broken(builder.at(place)) if made is None else made
         builder.kept.append(made)
@@ -155,14 +154,6 @@ class _Scope:
         else:
             what = '"play" in a set with elements is not in this version'
             self.builder.add("E120", place, what, "write the statements of that icon here")
-
-    def period(self, part: Any) -> float:
-        """Return the step from one element to the next in s; NaN, with a finding, when it is not valid."""
-        if rule_of(part) != "every_use":
-            return self.builder.quantity(part)
-        self.used.add(str(part.children[0]))
-        self.broken = True
-        return float("nan")
 
     def leaf(self, tree: Any, path: Path) -> Statement | None:
         """Return the statement for a tree, or None, and findings, when its numbers are not all in order."""

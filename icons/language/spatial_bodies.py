@@ -1,77 +1,39 @@
 """Assembly of what an icon plays on which display elements."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, cast
 
 from ..model.spatial import Along, On, Part, Together
-from ..model.statements import Broken, Statement
+from ..model.statements import Statement
 from ..model.words import nearest
-from .build import Builder, Place, rule_of, span
+from .build import Place, rule_of, span
 from .failed_statement import short
 from .source import Patch
+
+if TYPE_CHECKING:
+    from .bodies import Scope
 
 BLOCKS = ("on", "along", "together")
 _EVERY = ("all", "both", "each", "every", "everything", "everywhere")
 _WRAPPED = "elements play statements: on all { ... }, or a name in place of all"
 
 
-class Scope(Protocol):
-    """What reads the statements of a body."""
+def spatial_parts(scope: "Scope", trees: Sequence[Any], elements: tuple[str, ...]) -> tuple[Part, ...]:
+    """Return the parts of an icon in a set with elements, with findings for what is not on elements.
 
-    builder: Builder
-    broken: bool
-
-    def body(self, parts: Iterable[Any], path: tuple[int, ...]) -> tuple[Statement | Broken, ...]:
-        """Return statements in order."""
-
-    def not_on_elements(self, word: str, place: Place) -> None:
-        """Report a statement that elements cannot take."""
-
-    def period(self, part: Any) -> float:
-        """Return the step from one element to the next in s; NaN, with a finding, when it is not valid."""
-
-
-@dataclass(frozen=True, slots=True)
-class BodyDraft:
-    """A body as written, the elements that play it, and their step in s where one begins after the other."""
-
-    names: tuple[str, ...]
-    body: tuple[Statement | Broken, ...]
-    place: Place
-    every_s: float | None = None
-
-    def part(self) -> On | Along:
-        """The part of an icon; its statements were all read."""
-        body = tuple(each for each in self.body if not isinstance(each, Broken))
-        return On(self.names, body) if self.every_s is None else Along(self.names, self.every_s, body)
-
-
-@dataclass(frozen=True, slots=True)
-class PartDraft:
-    """Bodies that begin at one time, in ``together`` or alone."""
-
-    bodies: tuple[BodyDraft, ...]
-    together: bool
-
-    def part(self) -> Part:
-        """The part of an icon."""
-        made = tuple(body.part() for body in self.bodies)
-        return Together(made) if self.together else made[0]
-
-
-def spatial_parts(scope: Scope, trees: Sequence[Any], elements: tuple[str, ...]) -> tuple[PartDraft, ...]:
-    """Return the parts of an icon in a set with elements, with findings for what is not on elements."""
+    The scope is broken where one of them could not be read; bodies may then hold Broken.
+    """
     return _Spatial(scope, elements).parts(trees)
 
 
 @dataclass(slots=True)
 class _Spatial:
-    scope: Scope
+    scope: "Scope"
     elements: tuple[str, ...]
 
-    def parts(self, trees: Sequence[Any]) -> tuple[PartDraft, ...]:
-        found: list[PartDraft] = []
+    def parts(self, trees: Sequence[Any]) -> tuple[Part, ...]:
+        found: list[Part | None] = []
         loose: list[Any] = []
         for tree in trees:
             rule = rule_of(tree)
@@ -84,10 +46,9 @@ class _Spatial:
             if rule == "together":
                 found.append(self.together(tree))
             elif rule in BLOCKS:
-                body = self.body(tree)
-                found += [PartDraft((body,), together=False)] if body else []
+                found.append(self.body(tree))
         self.outside(loose)
-        return tuple(found)
+        return tuple(part for part in found if part is not None)
 
     def outside(self, trees: Sequence[Any]) -> None:
         """Report statements in a row that stand outside of a block."""
@@ -112,15 +73,14 @@ class _Spatial:
         what = f'"{short(text.split(maxsplit=1)[0])}" stands outside of "on", in a set with elements'
         builder.add("E233", span(trees[0]), what, _WRAPPED, Patch(start, end, f"on all {{ {text} }}"))
 
-    def together(self, tree: Any) -> PartDraft:
-        """Return parts that begin at one time; each element plays in one of them."""
-        builder, bodies = self.scope.builder, list[BodyDraft]()
+    def together(self, tree: Any) -> Together | None:
+        """Return parts that begin at one time, each on elements of its own; None, with findings, for others."""
+        builder, bodies, sound = self.scope.builder, list[On | Along](), True
         parts = [part for part in tree.children if rule_of(part)]
         self.scope.broken |= len(parts) < len(tree.children)
         if not tree.children:
             what = 'there is nothing between the braces of "together"'
             builder.add("E217", span(tree), what, "put two or more of: on left { ... }")
-            self.scope.broken = True
         stray = next((part for part in parts if rule_of(part) not in BLOCKS), None)
         if stray is not None:
             what = 'only "on" and "along" stand in "together"'
@@ -139,35 +99,35 @@ class _Spatial:
                         what = f"{name} plays since line {line} already, at the same time"
                         help = 'an element plays one thing at a time: put this behind the end of "together"'
                         builder.add("E236", _word(part), what, help)
-                        self.scope.broken = True
+                        sound = False
                     first.setdefault(name, span(part))
-        return PartDraft(tuple(bodies), together=True)
+        self.scope.broken |= not (sound and bodies)
+        return Together(tuple(bodies)) if sound and bodies else None
 
-    def body(self, tree: Any) -> BodyDraft | None:
+    def body(self, tree: Any) -> On | Along | None:
         """Return what some elements play; None, with findings, when its head could not be read."""
         head, *rest = tree.children
-        builder, place = self.scope.builder, span(tree)
+        builder, place, every = self.scope.builder, span(tree), None
         names = self.names(head) if rule_of(head) == "names" else None
-        every = None
-        if names is not None and rule_of(tree) == "along":
-            every = self.scope.period(rest.pop(0))
-            if len(names) == 1 and every == every:
-                what = f'"along" goes from one element to the next, and {names[0]} is one'
-                brace = builder.source.text.index("{", place[0])
-                help = "name two or more elements, or write: on NAME { ... }"
-                builder.add("E238", span(head), what, help, Patch(place[0], brace, f"on {names[0]} "))
-        elif rule_of(head) == "names" and rule_of(tree) == "along":
-            rest = rest[1:]
-        statements = self.scope.body(rest, ())
-        if not statements and rule_of(head):
+        if rest and rule_of(rest[0]) in ("period", "every_use"):
+            step = rest.pop(0)
+            every = builder.quantity(step) if rule_of(step) == "period" else float("nan")
+        if every == every and every is not None and names is not None and len(names) == 1:
+            what = f'"along" goes from one element to the next, and {names[0]} is one'
+            brace = builder.source.text.index("{", place[0])
+            help = "name two or more elements, or write: on NAME { ... }"
+            builder.add("E238", span(head), what, help, Patch(place[0], brace, f"on {names[0]} "))
+            names = None
+        body = cast(tuple[Statement, ...], self.scope.body(rest, ()))
+        if not rest:
             what = f'there is nothing between the braces of "{rule_of(tree)}"'
             builder.add("E217", place, what, "put the statements that these elements play between them")
-        if names is None or every != every or not statements or (every is not None and len(names) < 2):
+        if names is None or every != every or not body:
             self.scope.broken = True
             return None
-        if rule_of(tree) == "on":
-            names = tuple(name for name in self.elements if name in names)
-        return BodyDraft(names, statements, place, every)
+        if every is not None:
+            return Along(names, every, body)
+        return On(tuple(name for name in self.elements if name in names), body)
 
     def names(self, tree: Any) -> tuple[str, ...] | None:
         """Return the elements that a list names, ranges of them in the order of the set or against it."""

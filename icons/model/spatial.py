@@ -27,11 +27,6 @@ class On:
     def __post_init__(self) -> None:
         _prove(self)
 
-    @property
-    def step_s(self) -> Fraction:
-        """Time in s from the beginning of one element to that of the next."""
-        return Fraction(0)
-
 
 @dataclass(frozen=True, slots=True)
 class Along:
@@ -46,11 +41,6 @@ class Along:
         _prove(self)
         if len(self.names) < 2:
             raise ValueError("Along needs at least two elements")
-
-    @property
-    def step_s(self) -> Fraction:
-        """Time in s from the beginning of one element to that of the next."""
-        return exact(self.every_s, "time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +57,8 @@ class Together:
 
 
 Part = On | Along | Together
+TimedBody = tuple[Fraction, Fraction, tuple[Statement, ...]]
+"""When (s) a body begins and ends on an element, and the body."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -118,11 +110,17 @@ class SpatialIcon(Drawn):
         used = {name for part in bodies_of(self.parts) for name in part.names}
         if unknown := used - set(self.context.elements):
             raise ValueError(f"icon {self.name} plays on {min(unknown)}, which is not an element of its context")
-        starts, end = self._starts()
+        starts, end = _starts(self)
         if end > LONGEST_S:
             raise ValueError(f"icon {self.name} lasts {float(end):.6g} s; an icon lasts at most one hour (3600 s)")
+        # Elements that play alike share one icon.
+        known: dict[tuple[TimedBody, ...], Icon] = {}
+        for plays in starts.values():
+            if plays not in known:
+                alone = replace(self.context, elements=())
+                known[plays] = Icon(self.name, tuple(_with_rests(plays)), alone, self.metadata)
         object.__setattr__(self, "duration_s", float(end))
-        object.__setattr__(self, "_tracks", tuple(self._made(starts)))
+        object.__setattr__(self, "_tracks", tuple((name, known[plays]) for name, plays in starts.items()))
 
     @property
     def tracks(self) -> Mapping[str, Icon]:
@@ -133,45 +131,6 @@ class SpatialIcon(Drawn):
     def content_hash(self) -> str:
         """SHA-256 of the canonical text, as 64 hexadecimal digits: equal icons have equal hashes, everywhere."""
         return content_hash(str(self))
-
-    def _starts(self) -> tuple[dict[str, list[tuple[Fraction, Fraction, tuple[Statement, ...]]]], Fraction]:
-        """When (s, exact) each element begins and ends which body, and the end of all."""
-        level, clock = rest_level(self.context), Fraction(0)
-        starts: dict[str, list[tuple[Fraction, Fraction, tuple[Statement, ...]]]] = {}
-        for part in self.parts:
-            ends = []
-            for each in part.parts if isinstance(part, Together) else (part,):
-                course = survey(each.body, self.context.control, level)
-                if course.problems:
-                    raise CueErrors(tuple(problem_error(one, self.name, self.context) for one in course.problems))
-                if course.level != level:
-                    raise ValueError(f"icon {self.name}: a body on {each.names[0]} ends away from baseline")
-                for place, name in enumerate(each.names):
-                    begin = clock + each.step_s * place
-                    ends.append(begin + course.duration)
-                    starts.setdefault(name, []).append((begin, ends[-1], each.body))
-            clock = max(ends)
-        return starts, clock
-
-    def _made(
-        self, starts: Mapping[str, list[tuple[Fraction, Fraction, tuple[Statement, ...]]]]
-    ) -> Iterator[tuple[str, Icon]]:
-        """Each element with its icon, in the order of the context; equal ones are one object."""
-        known: dict[tuple[tuple[Fraction, int], ...], Icon] = {}
-        alone = replace(self.context, elements=())
-        for name in self.context.elements:
-            key = tuple((begin, id(body)) for begin, _, body in starts.get(name, ()))
-            if key and key not in known:
-                statements: list[Statement] = []
-                clock = Fraction(0)
-                for begin, end, body in starts[name]:
-                    gap = float(begin - clock)
-                    statements += [Rest(gap)] if gap >= SHORTEST_S else []  # bodies whose lengths differ by rounding
-                    statements += body
-                    clock = end
-                known[key] = Icon(self.name, tuple(statements), alone, self.metadata)
-            if key:
-                yield name, known[key]
 
     def __str__(self) -> str:
         return icon_text(self)
@@ -187,6 +146,36 @@ def bodies_of(parts: Iterable[Part]) -> Iterator[On | Along]:
     """Yield the parts that have a body, those that begin together among them."""
     for part in parts:
         yield from part.parts if isinstance(part, Together) else (part,)
+
+
+def _starts(icon: SpatialIcon) -> tuple[dict[str, tuple[TimedBody, ...]], Fraction]:
+    """What each element that plays does, in the order of the context, and the end of all (s)."""
+    level, clock = rest_level(icon.context), Fraction(0)
+    starts: dict[str, list[TimedBody]] = {name: [] for name in icon.context.elements}
+    for part in icon.parts:
+        ends = []
+        for each in bodies_of([part]):
+            course = survey(each.body, icon.context.control, level)
+            if course.problems:
+                raise CueErrors(tuple(problem_error(one, icon.name, icon.context) for one in course.problems))
+            if course.level != level:
+                raise ValueError(f"icon {icon.name}: a body on {each.names[0]} ends away from baseline")
+            step = exact(each.every_s, "time") if isinstance(each, Along) else Fraction(0)
+            for place, name in enumerate(each.names):
+                ends.append(clock + step * place + course.duration)
+                starts[name].append((clock + step * place, ends[-1], each.body))
+        clock = max(ends)
+    return {name: tuple(plays) for name, plays in starts.items() if plays}, clock
+
+
+def _with_rests(plays: Iterable[TimedBody]) -> Iterator[Statement]:
+    """The statements of an element, which rests until each of its bodies begins."""
+    clock = Fraction(0)
+    for begin, end, body in plays:
+        if (gap := float(begin - clock)) >= SHORTEST_S:  # bodies of one length may differ by rounding
+            yield Rest(gap)
+        yield from body
+        clock = end
 
 
 def _prove(part: On | Along) -> None:
