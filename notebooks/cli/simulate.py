@@ -6,6 +6,7 @@ import json
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -22,6 +23,7 @@ from ..report.following import after_simulating
 from ..report.gate_words import CAUTION
 from ..report.run_report import describe, headline, session_report
 from ..report.terminal import show
+from .on_elements import simulate_elements
 from .options import (
     LARGEST_SEED,
     LONGEST_TAIL_S,
@@ -185,12 +187,15 @@ def simulate_file(
     from thermicon.circuit import nearest_reachable, simulate
 
     whole = read_set([file])
+    if whole.spatial:
+        on_elements(whole, file, icon, asked, rate_Hz, tail_s, output, figure)
+        return
     icons, rig = pick(whole, icon), asked.load(whole, file)
     pictures = [figure.named(each.name) if len(icons) > 1 else figure for each in icons]
     _check_outputs(file, output, pictures)
     traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
     near = [None if one.reachable else nearest_reachable(each, rig) for each, one in zip(icons, traces, strict=True)]
-    safe = tell(traces, rig, output, [None if found is None else found.sentence for found in near])
+    safe = tell(traces, output, [None if found is None else found.sentence for found in near])
     if output is None:
         lost = [str(one.icon) for one, kept in zip(traces, safe, strict=True) if not (one.reachable and kept)]
         cured = [str(one.icon) for one, found in zip(traces, near, strict=True) if found is not None]
@@ -198,6 +203,30 @@ def simulate_file(
     for each, picture in zip(icons, pictures, strict=True):
         if picture.figure or picture.film:
             picture.write_felt(simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s), rig)
+
+
+def on_elements(
+    icons: IconSet,
+    file: str,
+    name: str | None,
+    asked: RigOptions,
+    rate_Hz: float,
+    tail_s: float | None,
+    output: Path | None,
+    figure: FilmOptions,
+) -> None:
+    """Play the icons of a set on several elements on a layout; write the traces, or print a summary of each."""
+    from ..figures.layout_figure import layout_figure
+
+    if figure.film:
+        icons.check_one_element()
+    _check_outputs(file, output, [figure])
+    runs = simulate_elements(icons, name, asked, file, rate_Hz, tail_s or 0.0)
+    traces = [trace for run in runs for trace in run.named]
+    tell(traces, output, [None] * len(traces))
+    for run in runs:
+        picture = figure.named(run.icon) if len(runs) > 1 else figure
+        picture.write(partial(layout_figure, run))
 
 
 def simulate_drive(
@@ -210,7 +239,7 @@ def simulate_drive(
     _check_outputs(file, output, [figure])
     with noted():
         played = read_drive(file, hold=hold, columns=theirs)
-    tell([simulate_current(played, rig, rate_Hz=rate_Hz)], rig, output, [None])
+    tell([simulate_current(played, rig, rate_Hz=rate_Hz)], output, [None])
     if figure.figure or figure.film:
         figure.write_felt(simulate_current(played, rig), rig)
 
@@ -222,15 +251,15 @@ def _check_outputs(read: str | Path, output: Path | None, pictures: Sequence[Fil
         check_output(output, TRACE_SUFFIXES, "a trace")
 
 
-def tell(traces: Sequence[Trace], rig: Rig, output: Path | None, cures: Sequence[str | None]) -> list[bool]:
+def tell(traces: Sequence[Trace], output: Path | None, cures: Sequence[str | None]) -> list[bool]:
     """Warn, and write the traces or print a summary of each; returns which are safe."""
     from thermicon.circuit.safety.verdict import judge_safety
 
     verdicts = [judge_safety(trace) for trace in traces]
     for trace, verdict in zip(traces, verdicts, strict=True):
         past = [f"{'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in verdict.findings]
-        for warning in (*trace.warnings, *trace.beyond, *past):
-            if warning not in rig.warnings:  # already reported when the rig was loaded
+        for warning in (*trace.beyond, *past):
+            if warning not in trace.warnings:  # already reported when the rig was loaded
                 note(f"warning: {trace.icon or 'drive'}: {warning}")
     for trace, better in zip(traces, cures, strict=True):
         if output is not None:

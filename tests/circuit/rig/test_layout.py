@@ -1,11 +1,15 @@
 """A layout of one element is its rig; one of several is refused with a cure."""
 
+import math
+import tomllib
 from functools import partial
 from pathlib import Path
 
 import pytest
 
+from tests.builders import messages
 from thermicon.circuit import Drive, Element, InputError, Layout, Rig, export, gate, simulate
+from thermicon.circuit.rig.layout import layout_names
 from thermicon.circuit.rig.rig import rig_names
 from thermicon.icons import Icon, load_library
 from thermicon.icons.files.shipped import library_names
@@ -15,15 +19,18 @@ SETS = [(name, rig) for name in library_names() for rig in rig_names()]
 THENAR = Rig.load("thenar")
 TWO = Layout((Element(THENAR, "left"), Element(THENAR, "right")))
 STEP = load_library("six-icons")["cooling-step"]
-WHEEL = """
+OWN = """
 format = 1
-name = "wheel"
+name = "mine"
+surfaces = "one"
 [[element]]
 name = "left"
 rig = "thenar"
+place_mm = [0, 0]
 [[element]]
 name = "right"
 like = "left"
+place_mm = [50, 0]
 """
 
 
@@ -63,11 +70,14 @@ def test_several_elements_are_refused_by_their_names_with_a_cure() -> None:
 
 
 def test_a_layout_file_is_refused_where_a_rig_is_needed_in_one_sentence(tmp_path: Path) -> None:
-    (file := tmp_path / "wheel.toml").write_text(WHEEL)
-    for take in (Rig.of, Rig.load, Layout.of):
-        with pytest.raises(InputError, match=r"wheel\.toml: a layout of several elements .* of one element$") as told:
-            take(str(file))
-        assert "\n" not in str(told.value)
+    path = file_of(tmp_path, OWN)
+    for take in (Rig.of, Rig.load, partial(simulate, STEP), partial(export, STEP), partial(rank, [STEP])):
+        for source in (path, "wheel"):
+            with pytest.raises(
+                InputError, match=r"a layout of several elements .* give the rig .*of one element$"
+            ) as told:
+                take(source)
+            assert "\n" not in str(told.value)
 
 
 @pytest.mark.parametrize(
@@ -83,3 +93,48 @@ def test_elements_that_cannot_be_told_from_each_other(elements: tuple[Element, .
         Layout(elements)
     with pytest.raises(InputError, match="element: "):
         Element(THENAR, "my left")
+
+
+def file_of(folder: Path, text: str) -> Path:
+    (path := folder / "mine.toml").write_text(text)
+    return path
+
+
+@pytest.mark.parametrize("name", layout_names())
+def test_a_shipped_layout_is_read_and_each_of_its_numbers_has_a_source(name: str) -> None:
+    layout = Layout.load(name)
+    assert layout.name == name
+    document = tomllib.loads((Path(__file__).parents[3] / "circuit" / "layouts" / f"{name}.toml").read_text("utf-8"))
+    told = set(document["source"])
+    for element in document["element"]:
+        assert {key for key in element if key.endswith("_mm")} | set(element.get("set", {})) <= told
+    assert {key for key in ("around_mm", "supply", "surfaces") if key in document} <= told
+    assert not document.get("sink") or "sink.resistance_K_per_W" in told
+
+
+def test_an_element_that_is_like_another_has_all_of_it_but_name_and_place() -> None:
+    ring = Layout.load("ring-four")
+    assert {element.rig.contact.area_m2 for element in ring.elements} == {0.6e-4}
+    assert {(element.sink, element.gap_m) for element in ring.elements} == {("body", 5.4e-3)}
+    assert ring.sinks[0].resistance_K_per_W == 8
+    places = [complex(*element.place_m) for element in ring.elements if element.place_m]
+    assert [abs(place) * math.tau for place in places] == pytest.approx([0.057] * 4)
+    assert abs(places[0] + places[2]) == pytest.approx(0, abs=1e-12), "opposite elements have the centre between them"
+
+
+def test_a_rig_may_be_a_file_beside_the_layout(tmp_path: Path) -> None:
+    THENAR.with_(**{"contact.area_cm2": 5}).save(tmp_path / "small.toml", "small")
+    layout = Layout.of(file_of(tmp_path, OWN.replace('"thenar"', '"small.toml"') + 'set = { "contact.area_cm2" = 3 }'))
+    assert [element.rig.contact.area_m2 * 1e4 for element in layout.elements] == pytest.approx([5, 3])
+    assert [element.rig.name for element in layout.elements] == ["small", "small"]
+
+
+@pytest.mark.parametrize(("change", "told"), messages(__file__, "layouts.toml")["wrong"].items())
+def test_a_wrong_layout_file_is_refused_with_place_and_cure(change: str, told: str, tmp_path: Path) -> None:
+    """A change is a text and what stands in its place, or is added behind it."""
+    before, _, after = change.partition(" → ")
+    assert before in OWN
+    path = file_of(tmp_path, OWN.replace(before, after, 1))
+    with pytest.raises(InputError, match=told) as refusal:
+        Layout.load(path)
+    assert all(line.startswith(f"{path}: ") for line in str(refusal.value).splitlines())

@@ -95,7 +95,13 @@ def test_a_set_on_several_elements_is_checked_and_refused_by_what_plays_one(cli:
     cli.good("convert", path, "-o", converted)
     assert cli.good("check", converted).stdout.partition(":")[2] == said.stdout.partition(":")[2]
     for command in (
-        *(["rank"], ["simulate"], ["improve"], ["sweep", "--vary", "contact.area_cm2=1,4"], ["list", "--cite"]),
+        *(
+            ["rank"],
+            ["simulate", "--film", tmp_path / "a.svg"],
+            ["improve"],
+            ["sweep", "--vary", "contact.area_cm2=1,4"],
+            ["list", "--cite"],
+        ),
         *(["pilot"], ["export", "--to", "csv", "-o", tmp_path / "drives"], ["play", "-o", tmp_path / "log"]),
     ):
         refused = cli(*command, path)
