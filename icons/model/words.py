@@ -13,24 +13,8 @@ from .units import UNITS, Control, Kind, decimal_text, exact_number
 
 _KEYS = ("means", "by", "doi", "licence", "tags")
 WAVES: tuple[str, ...] = get_args(Shape)
-_STATEMENTS = (
-    "cool",
-    "warm",
-    "change",
-    "hold",
-    "rest",
-    "return",
-    "step",
-    "pulse",
-    *WAVES,
-    "repeat",
-    "on",
-    "together",
-    "along",
-    "play",
-    "total",
-    "to",
-)
+_MOVES = ("cool", "warm", "change", "hold", "rest", "return", "step", "pulse")
+_STATEMENTS = (*_MOVES, *WAVES, "repeat", "on", "together", "along", "play", "total", "to")
 VOCABULARY: dict[str, tuple[str, ...]] = {
     "file": ("cue", "set", "icon"),
     "set": ("site", "control", "baseline", "elements", *_KEYS),
