@@ -127,7 +127,7 @@ class _Assembler:
 
     def settings(self, tree: Any) -> None:
         seen: dict[str, int] = {}
-        metadata = []
+        metadata, named = [], None
         for part in tree.children:
             rule = str(getattr(part, "data", part.type if hasattr(part, "type") else ""))
             if rule == "NAME":
@@ -157,24 +157,10 @@ class _Assembler:
             self.control = self.control if "control" in seen else None
             self.baseline_known = self.baseline_known and "baseline" in seen
             self.elements = self.elements or None
-        if "elements" in seen:
-            self.check_elements(named)
+        if named is not None and (wrong := elements_fault(self.elements or (), self.control or "skin")):
+            self.builder.add("E239", span(named), *wrong)
+            self.elements = None  # not known, so that icons draw no errors after it
         self.metadata = self.builder.metadata(metadata)
-
-    def check_elements(self, tree: Any) -> None:
-        """Report names that no elements can have; they are then not known."""
-        names, builder = [str(token) for token in tree.children], self.builder
-        before: Any = None
-        for place, token in enumerate(tree.children):
-            if names[place] in names[:place]:
-                cure = Patch(span(before)[1], span(token)[1], "")
-                builder.add("E213", span(token), f"{names[place]} is already named", "name each element once", cure)
-                self.elements = None
-                return
-            before = token
-        if wrong := elements_fault(names, self.control or "skin"):
-            builder.add("E239", span(tree), *wrong)
-            self.elements = None
 
     def names(self, drafts: list[IconDraft]) -> None:
         first: dict[str, Place] = {}

@@ -44,7 +44,7 @@ from .options import (
 )
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig, Session, Trace
+    from thermicon.circuit import LayoutTrace, Rig, Session, Trace
     from thermicon.icons import IconSet
 
 LONGEST_GAP_S, MOST_PLAYS = 3600.0, 5000
@@ -72,6 +72,12 @@ class FilmOptions(FigureOptions):
         """The same for one icon of several, whose name its files have at their ends."""
         figure, film = (path and path.with_stem(f"{path.stem}-{icon}") for path in (self.figure, self.film))
         return replace(self, figure=figure, film=film)
+
+    def write_rows(self, run: LayoutTrace) -> None:
+        """Write the figure of a run on several elements."""
+        from ..figures.layout_figure import layout_figure
+
+        self.write(partial(layout_figure, run))
 
     def write_felt(self, trace: Trace, rig: Rig) -> None:
         """Write the figure and the film of a run with what is felt of it, and say so."""
@@ -188,7 +194,13 @@ def simulate_file(
 
     whole = read_set([file])
     if whole.spatial:
-        on_elements(whole, file, icon, asked, rate_Hz, tail_s, output, figure)
+        _refuse({"--film": figure.film}, True, "shows one element, and this set is for several; draw a --figure")
+        _check_outputs(file, output, [figure])
+        runs = simulate_elements(whole, icon, asked, file, rate_Hz, tail_s or 0.0)
+        played = [trace for run in runs for trace in run.named]
+        tell(played, output, [None] * len(played))
+        for run in runs:
+            (figure.named(run.icon) if len(runs) > 1 else figure).write_rows(run)
         return
     icons, rig = pick(whole, icon), asked.load(whole, file)
     pictures = [figure.named(each.name) if len(icons) > 1 else figure for each in icons]
@@ -203,30 +215,6 @@ def simulate_file(
     for each, picture in zip(icons, pictures, strict=True):
         if picture.figure or picture.film:
             picture.write_felt(simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s), rig)
-
-
-def on_elements(
-    icons: IconSet,
-    file: str,
-    name: str | None,
-    asked: RigOptions,
-    rate_Hz: float,
-    tail_s: float | None,
-    output: Path | None,
-    figure: FilmOptions,
-) -> None:
-    """Play the icons of a set on several elements on a layout; write the traces, or print a summary of each."""
-    from ..figures.layout_figure import layout_figure
-
-    if figure.film:
-        icons.check_one_element()
-    _check_outputs(file, output, [figure])
-    runs = simulate_elements(icons, name, asked, file, rate_Hz, tail_s or 0.0)
-    traces = [trace for run in runs for trace in run.named]
-    tell(traces, output, [None] * len(traces))
-    for run in runs:
-        picture = figure.named(run.icon) if len(runs) > 1 else figure
-        picture.write(partial(layout_figure, run))
 
 
 def simulate_drive(

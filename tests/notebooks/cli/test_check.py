@@ -97,7 +97,6 @@ def test_a_set_on_several_elements_is_checked_and_refused_by_what_plays_one(cli:
     for command in (
         *(
             ["rank"],
-            ["simulate", "--film", tmp_path / "a.svg"],
             ["improve"],
             ["sweep", "--vary", "contact.area_cm2=1,4"],
             ["list", "--cite"],

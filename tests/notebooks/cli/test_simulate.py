@@ -137,6 +137,7 @@ def test_several_elements_are_simulated_on_a_layout_with_a_row_for_each(cli: Cli
     [
         ([], "name a layout, such as wheel"),
         (["--rig", "ring-four"], "name a layout that has them"),
+        (["--rig", "wheel", "--film", "turn.svg"], "this set is for several; draw a --figure"),
         (["--rig", "wheel", "--icon", "trun"], "did you mean turn?"),
         (["--rig", "wheel", "--set", "contact.area_cm2=4"], "write set = { … } into an element of the layout file"),
     ],
