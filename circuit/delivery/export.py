@@ -88,25 +88,19 @@ class Export:
         return f"Export({count} on {self.rig.name} for {self.device.name} as {self.form.name}: {summary})"
 
     @property
-    def channel(self) -> ExportChannel:
-        """The only channel."""
-        (only,) = self.channels
-        return only
-
-    @property
     def rig(self) -> Rig:
         """The rig of the only channel."""
-        return self.channel.rig
+        return self.channels[0].rig
 
     @property
     def device(self) -> Device:
         """The device of the only channel."""
-        return self.channel.device
+        return self.channels[0].device
 
     @property
     def prepared(self) -> tuple[Prepared, ...]:
         """What the device of the only channel delivers of each icon, with its verdict."""
-        return self.channel.prepared
+        return self.channels[0].prepared
 
     @property
     def warnings(self) -> tuple[str, ...]:

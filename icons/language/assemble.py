@@ -233,7 +233,8 @@ class _Assembler:
         if self.corners > MOST_CORNERS_A_FILE:
             return None
         corners = corner_count(draft.body)
-        self.corners += corners if corners <= MOST_CORNERS else 0
+        tracks = sum(corner_count(body.body) * len(body.names) for body in bodies_of(draft.parts))
+        self.corners += (corners if corners <= MOST_CORNERS else 0) + tracks
         if self.corners > MOST_CORNERS_A_FILE:
             what = f"written out, the icons up to here have {self.corners:,} corners"
             self.builder.add("E220", draft.place, what, f"a file has at most {MOST_CORNERS_A_FILE:,} corners")
@@ -265,7 +266,6 @@ class _Assembler:
             self.builder.add("E120", draft.place, what, "write each of its icons out")
         rest = self.rest()
         for body in bodies_of(draft.parts):
-            self.corners += corner_count(body.body) * len(body.names)
             self.returns(body.body)
             course = survey(body.body, cast(Control, self.control), rest)
             for problem in course.problems:
@@ -276,7 +276,7 @@ class _Assembler:
                 cure = Patch(last[1], last[1], "; return at 3 °C/s")
                 self.builder.add("E240", last, "this body ends away from baseline", help, cure)
         sound = draft.name is not None and draft.parts and not draft.unread and self.baseline_known
-        if len(self.builder.findings) > before or not sound or self.corners > MOST_CORNERS_A_FILE:
+        if len(self.builder.findings) > before or not sound:
             return
         try:
             self.spatial.append(SpatialIcon(cast(str, draft.name), draft.parts, self.context(), draft.metadata))
