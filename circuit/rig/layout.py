@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from thermicon.base.checks.arguments import checked
-from thermicon.base.files.inputs import named_text, read_text, shipped_names
+from thermicon.base.files.inputs import named_text, shipped_names
 from thermicon.base.words.clean_text import name_fault
 
 from .layoutfile import LayoutTable, Sink, Supply, read_layout_table
 from .rig import AnyRig, Rig, rig_names
 from .rigfile import RigError, parse_toml
+
+_ELEMENTS = re.compile(rb"(?m)^\s*(\[\[\s*element\s*\]\]|element\s*=)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,9 +157,9 @@ def layout_names() -> tuple[str, ...]:
 
 def _is_layout(source: str | Path) -> bool:
     """Whether a name or a file is that of a layout; no rig has elements."""
-    path = Path(source)
-    if path.is_file():
-        return "[[element]]" in read_text(path, "layout file", 1, RigError)
+    if Path(source).is_file():
+        with suppress(OSError), Path(source).open("rb") as opened:  # whose faults the reader of the file reports
+            return _ELEMENTS.search(opened.read(1_000_000)) is not None
     return str(source) not in rig_names() and str(source) in layout_names()
 
 

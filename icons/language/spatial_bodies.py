@@ -63,11 +63,8 @@ class _Spatial:
             help = 'put "repeat" inside of it: on left { repeat 3 { ... } }'
             builder.add("E237", _word(inner), what, help)
             return
-        if rule_of(trees[0]) == "play":
-            self.scope.not_on_elements("play", span(trees[0]))
-            return
-        if rule_of(trees[0]) == "total":
-            self.scope.not_on_elements("total", span(trees[0]))
+        if (rule := rule_of(trees[0])) in ("play", "total"):
+            self.scope.not_on_elements(rule, span(trees[0]))
             self.outside(trees[1:])
             return
         what = f'"{short(text.split(maxsplit=1)[0])}" stands outside of "on", in a set with elements'
@@ -107,16 +104,15 @@ class _Spatial:
     def body(self, tree: Any) -> On | Along | None:
         """Return what some elements play; None, with findings, when its head could not be read."""
         head, *rest = tree.children
-        builder, place, every = self.scope.builder, span(tree), None
+        builder, place, every, step = self.scope.builder, span(tree), None, head
         names = self.names(head) if rule_of(head) == "names" else None
         if rest and rule_of(rest[0]) in ("period", "every_use"):
             step = rest.pop(0)
             every = builder.quantity(step) if rule_of(step) == "period" else float("nan")
         if every == every and every is not None and names is not None and len(names) == 1:
             what = f'"along" goes from one element to the next, and {names[0]} is one'
-            brace = builder.source.text.index("{", place[0])
             help = "name two or more elements, or write: on NAME { ... }"
-            builder.add("E238", span(head), what, help, Patch(place[0], brace, f"on {names[0]} "))
+            builder.add("E238", span(head), what, help, Patch(place[0], span(step)[1], f"on {names[0]}"))
             names = None
         body = cast(tuple[Statement, ...], self.scope.body(rest, ()))
         if not rest:
@@ -136,19 +132,16 @@ class _Spatial:
         for part in tree.children:
             if not rule_of(part):
                 return self.elements
-            places = [self.place(token) for token in part.children]
-            known = [place for place in places if place is not None]
-            sound &= len(known) == len(places)
-            if len(known) == len(places):
+            known = [place for place in map(self.place, part.children) if place is not None]
+            sound &= len(known) == len(part.children)
+            if len(known) == len(part.children):
                 first, last = known[0], known[-1]
-                way = 1 if last >= first else -1
-                again = [name for name in self.elements[first::way][: abs(last - first) + 1] if name in found]
-                if again:
-                    cure = Patch(before, span(part)[1], "") if len(known) == 1 else None
-                    what = f"{again[0]} is named already"
-                    builder.add("E236", span(part), what, "name each element once", *([cure] if cure else []))
+                meant = self.elements[first : last + 1] if first <= last else self.elements[last : first + 1][::-1]
+                if again := [name for name in meant if name in found]:
+                    cures = [Patch(before, span(part)[1], "")] if len(known) == 1 else []
+                    builder.add("E236", span(part), f"{again[0]} is named already", "name each element once", *cures)
                     sound = False
-                found += self.elements[first::way][: abs(last - first) + 1]
+                found += meant
             before = span(part)[1]
         return tuple(found) if sound else None
 
