@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from math import cos, sin, tau
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import BeforeValidator, Field, ValidationError
 
 from thermicon.base.files.inputs import LONGEST_NAME, Place, key_faults
 from thermicon.base.words.near_words import did_you_mean
@@ -26,7 +26,7 @@ class ElementTable(KeyTable):
     rig: kinds.Text | None = None
     like: kinds.Name | None = None
     set: dict[kinds.Text, Any] = Field(default_factory=dict)
-    place_mm: Millimetres | Annotated[list[Millimetres], Field(min_length=2, max_length=2)]
+    place_mm: Annotated[list[Millimetres], BeforeValidator(lambda place: place if isinstance(place, list) else [place])]
     gap_mm: Annotated[float, Field(ge=0, le=1000)] | None = None
     sink: kinds.Name | None = None
 
@@ -58,7 +58,7 @@ class LayoutTable(KeyTable):
     title: kinds.Text = ""
     surfaces: Literal["apart", "one"]
     around_mm: Annotated[float, Field(ge=10, le=2000)] | None = None
-    element: Annotated[list[ElementTable], Field(min_length=2, max_length=MOST_ELEMENTS)]
+    element: list[ElementTable]
     sink: list[Sink] = Field(default_factory=list)
     supply: Supply | None = None
     source: dict[kinds.Text, kinds.Paragraph] = Field(default_factory=dict)
@@ -69,6 +69,8 @@ class LayoutTable(KeyTable):
         for what, listed in (("element", names), ("sink", sinks)):
             for name in (name for name, count in Counter(listed).items() if count > 1):
                 yield f"two {what}s are called {name}; give each a name of its own"
+        if not 2 <= len(names) <= MOST_ELEMENTS:
+            yield f"a layout has 2 to {MOST_ELEMENTS} elements, not {len(names)}; for one, give its rig"
         if "all" in names:
             yield '"all" means every element, and cannot be the name of one; give that element another name'
         likes = {each.name: each.like for each in self.element}
@@ -80,14 +82,14 @@ class LayoutTable(KeyTable):
             if each.sink is not None and each.sink not in sinks:
                 cure = did_you_mean(each.sink, sinks) if sinks else "remove its sink, or describe it in the file"
                 yield f"{each.name} is on {each.sink}, which is no [[sink]]; {cure}"
-            if isinstance(each.place_mm, list) == (self.around_mm is not None):
+            if len(each.place_mm) != (2 if self.around_mm is None else 1):
                 shape = "[x, y]" if self.around_mm is None else "a length around the circle, one number"
                 yield f"{each.name}: place_mm is {shape}"
         for sink in (sink for sink in sinks if sink not in {each.sink for each in self.element}):
             yield f"no element is on the sink {sink}; remove it, or name it as sink of an element"
-        places = Counter(map(self.point_m, self.element))
-        if twice := next((at for at, count in places.items() if count > 1), None):
-            here = [each.name for each in self.element if self.point_m(each) == twice]
+        places = Counter(tuple(each.place_mm) for each in self.element)
+        if twice := next((place for place, count in places.items() if count > 1), None):
+            here = [each.name for each in self.element if tuple(each.place_mm) == twice]
             yield f"{' and '.join(here)} are at one place; give each a place_mm of its own"
 
     def chain(self, element: ElementTable) -> list[ElementTable]:
@@ -99,11 +101,10 @@ class LayoutTable(KeyTable):
 
     def point_m(self, element: ElementTable) -> tuple[float, float]:
         """Where an element is, in m: a length around a circle becomes a point of its plane."""
-        if isinstance(element.place_mm, list):
+        if self.around_mm is None:
             return element.place_mm[0] * 1e-3, element.place_mm[1] * 1e-3
-        around = self.around_mm or 1.0
-        angle = tau * (element.place_mm % around) / around
-        return around * 1e-3 / tau * cos(angle), around * 1e-3 / tau * sin(angle)
+        angle, radius = tau * element.place_mm[0] / self.around_mm, self.around_mm * 1e-3 / tau
+        return radius * cos(angle), radius * sin(angle)
 
 
 def read_layout_table(document: Mapping[str, Any], where: str) -> LayoutTable:
