@@ -233,8 +233,9 @@ class _Assembler:
         if self.corners > MOST_CORNERS_A_FILE:
             return None
         corners = corner_count(draft.body)
-        tracks = sum(corner_count(body.body) * len(body.names) for body in bodies_of(draft.parts))
-        self.corners += (corners if corners <= MOST_CORNERS else 0) + tracks
+        self.corners += corners if corners <= MOST_CORNERS else 0
+        if draft.parts:
+            self.corners += sum(corner_count(body.body) * len(body.names) for body in bodies_of(draft.parts))
         if self.corners > MOST_CORNERS_A_FILE:
             what = f"written out, the icons up to here have {self.corners:,} corners"
             self.builder.add("E220", draft.place, what, f"a file has at most {MOST_CORNERS_A_FILE:,} corners")
