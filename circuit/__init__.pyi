@@ -1,9 +1,11 @@
 # The names of this package in the order of the flow; each is imported when it is first asked for.
 from .rig.rigfile import InputError as InputError
 from .rig.rig import Rig as Rig
+from .rig.layout import Layout as Layout, Element as Element
 from .rig.rules import Limits as Limits
 from .solver.drive import Drive as Drive, read_drive as read_drive
 from .solver.trace import Trace as Trace, Outcome as Outcome
+from .solver.played import LayoutTrace as LayoutTrace
 from .solver.simulate import simulate as simulate, simulate_current as simulate_current
 from .solver.batch import simulate_many as simulate_many
 from .solver.inverse import design as design

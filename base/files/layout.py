@@ -36,7 +36,7 @@ Row = tuple[int, list[str]]
 
 
 @dataclass(slots=True)
-class Layout:
+class TableLayout:
     """A table in a text: ``names``, the ``line`` where they stand (0: nowhere), the width of its rows, and the mark.
 
     ``units`` stand in lines of their own, ``key`` are the columns of numbers, ``start`` is the line of the first row.
@@ -97,7 +97,7 @@ def cells_of(lines: Iterator[str], mark: str) -> Iterator[Row]:
         above = reader.line_num
 
 
-def layout_of(text: str, names: Sequence[str], theirs: Mapping[str, str]) -> Layout:
+def layout_of(text: str, names: Sequence[str], theirs: Mapping[str, str]) -> TableLayout:
     """Return the layout by which most rows agree; of several, the one whose names are known.
 
     Without ``time_s`` among the names, rows may be words, so that all lines below the names are rows.
@@ -107,7 +107,7 @@ def layout_of(text: str, names: Sequence[str], theirs: Mapping[str, str]) -> Lay
     """
     lines = [line[:LONGEST_LINE] for line in itertools.islice(io.StringIO(text), SAMPLE)]
     head = max((at for at, line in enumerate(lines) if line.startswith("***End_of_Header***")), default=-1)
-    best, chosen = -1.0, Layout(",", [], 0, [], 0, (), 0, ())
+    best, chosen = -1.0, TableLayout(",", [], 0, [], 0, (), 0, ())
     for mark in MARKS:
         rows = list[Row]()
         with suppress(csv.Error):
@@ -120,7 +120,7 @@ def layout_of(text: str, names: Sequence[str], theirs: Mapping[str, str]) -> Lay
 
 def _judged(
     rows: list[Row], mark: str, names: Sequence[str], theirs: Mapping[str, str], lines: Sequence[str]
-) -> tuple[float, Layout]:
+) -> tuple[float, TableLayout]:
     """How far rows agree where a mark parts them, and their layout."""
     shares = [_share(cells) for _, cells in rows]
     sizes = Counter[int]()
@@ -159,7 +159,7 @@ def _judged(
     start = rows[first][0] if first < len(rows) and (width or best) else rows[at][0] + 1 if best else 0
     above = tuple(lines[: rows[at][0] if best else start])
     line = rows[at][0] + 1 if best else 0
-    return score, Layout(mark, list(best[1]) if best else [], line, between, start, key, width, above)
+    return score, TableLayout(mark, list(best[1]) if best else [], line, between, start, key, width, above)
 
 
 def _is_stamped(cells: Sequence[str]) -> bool:
@@ -220,7 +220,7 @@ def _names(
     return 0.5 * len(there) / max(len(plain), 1) - 0.4 * units / len(there) - again, plain
 
 
-def rows_of(layout: Layout, text: str) -> Iterator[tuple[int, list[str], bool]]:
+def rows_of(layout: TableLayout, text: str) -> Iterator[tuple[int, list[str], bool]]:
     """The lines below the names, each with its number and cells, and whether these are a row of the table."""
     stream = itertools.islice(io.StringIO(text), layout.start, None)
     first, last = (layout.key[0], layout.key[-1]) if layout.key else (0, 0)

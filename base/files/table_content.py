@@ -16,7 +16,7 @@ from .layout import (
     LONGEST_CELL,
     LONGEST_FOOT,
     NOTHINGS,
-    Layout,
+    TableLayout,
     is_number,
     rows_of,
     with_units,
@@ -55,7 +55,7 @@ def labelled(text: str) -> Content | None:
     return Content(header, rows, places, places[0], ",", notes)
 
 
-def laid_out(text: str, layout: Layout, fault: Fault, example: str, most_rows: int) -> Content:
+def laid_out(text: str, layout: TableLayout, fault: Fault, example: str, most_rows: int) -> Content:
     """The content of a text by its layout; raises a fault where it has none."""
     if text.lstrip().startswith(("{", "[{", "[\n{")):
         raise fault("binary", None, "this is JSON, not a table", "write its records as CSV")
@@ -79,7 +79,7 @@ def laid_out(text: str, layout: Layout, fault: Fault, example: str, most_rows: i
 
 
 def _read(
-    text: str, layout: Layout, fault: Fault, most_rows: int
+    text: str, layout: TableLayout, fault: Fault, most_rows: int
 ) -> tuple[list[str], list[list[str]], list[int], list[tuple[int, list[str]]]]:
     """Names, rows and their lines, and the lines below the names that are no rows; raises a fault for a misfit."""
     header, rows, places = [cell.strip('"') for cell in layout.names], list[list[str]](), list[int]()
@@ -116,7 +116,7 @@ def _is_word(cells: Sequence[str]) -> bool:
     return bool(cells and cells[0] and cells[0].lower() not in NOTHINGS and not is_number(cells[0]))
 
 
-def _left_out(layout: Layout, left: Sequence[tuple[int, list[str]]]) -> list[str]:
+def _left_out(layout: TableLayout, left: Sequence[tuple[int, list[str]]]) -> list[str]:
     """Notes on the lines that are no rows: above the names, and among or below the rows."""
     above = sum(bool(line.strip()) and not line.startswith(COMMENTS) for line in layout.above)
     notes = [f"lines above the names were passed over: {above}"] if above else []

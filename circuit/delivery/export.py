@@ -11,7 +11,8 @@ from thermicon.base.files.inputs import InputError
 from thermicon.base.words.number_text import count_of
 from thermicon.icons.files.shipped import Icons, by_name
 
-from ..rig.rig import AnyRig, Rig
+from ..rig.layout import AnyLayout, Layout
+from ..rig.rig import Rig
 from .device import Device
 from .export_folder import HOW, check_export_folder, publish
 from .formats import Format, load_format
@@ -42,15 +43,24 @@ class Felt(Protocol):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class ExportChannel:
+    """What one element plays: its rig, the device that drives it, and each icon as delivered, with its verdict."""
+
+    rig: Rig
+    device: Device
+    prepared: tuple[Prepared, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Export:
-    """The result of `export`.
+    """The result of `export`; `rig`, `device` and `prepared` are those of its only channel.
 
     Attributes
     ----------
-    rig, device, form
-        The rig, the device and the file format.
-    prepared
-        What the device delivers of each icon, with its verdict.
+    channels
+        Each display element with its rig, its device and what that delivers of each icon; there is one.
+    form
+        The file format.
     felt
         How the device changes what is felt of each icon; empty where that was not asked for.
     force
@@ -64,10 +74,8 @@ class Export:
     ((), ['warming-step.json', 'warming-step.tcs2.txt'])
     """
 
-    rig: Rig
-    device: Device
+    channels: tuple[ExportChannel, ...]
     form: Format
-    prepared: tuple[Prepared, ...]
     felt: tuple[Felt, ...] = ()
     force: bool = False
 
@@ -78,6 +86,21 @@ class Export:
             size = sum(len(content) for content in files.values())
             summary = f"{count_of(len(files), 'file')}, {size / 1e3:.1f} kB"
         return f"Export({count} on {self.rig.name} for {self.device.name} as {self.form.name}: {summary})"
+
+    @property
+    def rig(self) -> Rig:
+        """The rig of the only channel."""
+        return self.channels[0].rig
+
+    @property
+    def device(self) -> Device:
+        """The device of the only channel."""
+        return self.channels[0].device
+
+    @property
+    def prepared(self) -> tuple[Prepared, ...]:
+        """What the device of the only channel delivers of each icon, with its verdict."""
+        return self.channels[0].prepared
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -133,7 +156,7 @@ class Export:
 @checked
 def export(
     icons: Icons,
-    rig: AnyRig = None,
+    rig: AnyLayout = None,
     device: Device | str | None = None,
     format: Format | str = "csv",
     *,
@@ -153,7 +176,7 @@ def export(
     icons
         A set, its name or file, or icons, which may later be played in any order.
     rig
-        The rig, or the name or file of one; None: the shipped rig of the icons' site, else thenar.
+        The rig, or the name or file of one, or a layout of one; None: the shipped rig of the icons' site, else thenar.
     device
         The device that plays the drives, or the name or file of one; None: the usual device of the format.
     format
@@ -196,7 +219,7 @@ def export(
     chosen = tuple(by_name(icons).values())
     if not chosen:
         raise ExportError("there is no icon to export; give at least one")
-    on = Rig.of(rig, chosen[0].context.site)
+    on = Layout.of(rig, chosen[0].context.site).alone
     where = None if folder is None else Path(folder)
     try:
         if where is not None:
@@ -204,7 +227,8 @@ def export(
             check_export_folder(where, how=CURE)
         judge = worst_cases if force else kept_or_judged
         prepared = prepare_set(chosen, on, played, form, judge=judge, tail_s=tail_s, pause_s=pause_s, step=step)
-        found = Export(on, played, form, prepared, () if felt is None else tuple(felt(prepared)), force)
+        channel = ExportChannel(on, played, prepared)
+        found = Export((channel,), form, () if felt is None else tuple(felt(prepared)), force)
         if where is not None:
             found.write(where, how=CURE)
     except OutputError as problem:

@@ -122,6 +122,8 @@ class Rig:
         A file with the name of a shipped rig is read in its place; a folder of that name is not. Raises RigError with
         every fault of the file on a line of its own, or the nearest name where there is no such rig.
         """
+        if str(source) not in rig_names() and str(source) in shipped_names("layouts") and not Path(source).exists():
+            raise RigError(f"{source}: a layout of several elements cannot be taken here; give the rig of one element")
         return _read(*named_text(source, rig_names(), "rig", RigError))
 
     @property
@@ -244,6 +246,8 @@ def _read(text: str, where: str) -> Rig:
 
 def rig_of(document: Mapping[str, Any], where: str) -> Rig:
     """The rig of a document, as its file has it; raises RigError with every fault, on `where`."""
+    if isinstance(document.get("element"), list):
+        raise RigError(f"{where}: a layout of several elements cannot be taken here; give the rig file of one element")
     table = read_table(document, where)
     try:
         return _assemble(table, json.dumps(document, sort_keys=True, ensure_ascii=False))

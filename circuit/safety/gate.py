@@ -8,7 +8,8 @@ import numpy as np
 from thermicon.base.checks.arguments import checked
 from thermicon.base.numbers.cores import quiet_blas
 
-from ..rig.rig import AnyRig, Rig
+from ..rig.layout import AnyLayout, Layout
+from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..rig.uncertainty import Uncertainty, tightened
 from ..solver.drive import Drive, DriveError
@@ -122,7 +123,7 @@ class Gate(Judged):
 @checked
 def gate(
     drive: Drive,
-    rig: AnyRig = "thenar",
+    rig: AnyLayout = "thenar",
     *,
     rest_A: float | None = None,
     bridge_A: float | None = None,
@@ -140,7 +141,7 @@ def gate(
     drive
         The current that the hardware receives.
     rig
-        The rig, or the name or file of one; its uncertainty determines the corners.
+        The rig, or the name or file of one, or a layout of one; its uncertainty determines the corners.
     rest_A
         Current in A held before the drive and in the pauses; None: the drive's first current.
     bridge_A
@@ -183,7 +184,7 @@ def gate(
     elif not np.isfinite(rest_A) or (bridge_A is not None and abs(rest_A) > bridge_A):
         most = "" if bridge_A is None else f" of at most {bridge_A:g} A"
         raise DriveError(f"a rest of {rest_A:g} A is not possible; it must be a finite current{most}")
-    return gate_set([(drive, rest_A)], Rig.of(rig), bridge_A=bridge_A, limits=limits, pause_s=pause_s)[0]
+    return gate_set([(drive, rest_A)], Layout.of(rig).alone, bridge_A=bridge_A, limits=limits, pause_s=pause_s)[0]
 
 
 def gate_set(

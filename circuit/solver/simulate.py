@@ -1,14 +1,18 @@
 """Simulation of the circuit: a cue or a drive on a rig gives a Trace."""
 
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import overload
 
 import numpy as np
 
 from thermicon.base.checks.arguments import checked
 from thermicon.base.numbers.arrays import Array
 from thermicon.base.words.number_text import significant
-from thermicon.icons import Icon
+from thermicon.icons import Icon, SpatialIcon
+from thermicon.icons.model.statements import Rest, Statement
 
+from ..rig.layout import AnyLayout, Layout
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import AnyRig, Rig
 from ..rig.rigfile import RigError
@@ -17,6 +21,7 @@ from .displayed import play_display, refuse_current
 from .drive import Drive
 from .inverse import baseline_C, design, design_many, target_at
 from .network import RECORDED, network_of
+from .played import LayoutTrace
 from .probes import between, divided, readings_of, sensed
 from .steady import state_under_current, steady_state
 from .trace import Outcome, Trace, of_rig
@@ -43,8 +48,14 @@ def rows_until(end_s: float, rate_Hz: float) -> Array:
     return rows if end_s - rows[-1] < 1e-9 else np.append(rows, end_s)
 
 
+@overload
+def simulate(icon: Icon, rig: AnyLayout = None, *, rate_Hz: float = 100.0, tail_s: float = 0.0) -> Trace: ...
+@overload
+def simulate(icon: SpatialIcon, rig: AnyLayout, *, rate_Hz: float = 100.0, tail_s: float = 0.0) -> LayoutTrace: ...
 @checked
-def simulate(icon: Icon, rig: AnyRig = None, *, rate_Hz: float = 100.0, tail_s: float = 0.0) -> Trace:
+def simulate(
+    icon: Icon | SpatialIcon, rig: AnyLayout = None, *, rate_Hz: float = 100.0, tail_s: float = 0.0
+) -> Trace | LayoutTrace:
     """Simulate a cue on a rig: find the current that produces it, then run the circuit with that current.
 
     A thermode needs no current: its display follows the cue within its own limits, and the skin follows the display.
@@ -54,7 +65,8 @@ def simulate(icon: Icon, rig: AnyRig = None, *, rate_Hz: float = 100.0, tail_s: 
     icon
         The cue.
     rig
-        The rig, or the name or file of one; None: the shipped rig of the icons' site, else thenar.
+        The rig, or the name or file of one; None: the shipped rig of the icons' site, else thenar. For a cue on several
+        elements a layout that has them, or its name or file.
     rate_Hz
         Rows of the trace per second.
     tail_s
@@ -63,12 +75,12 @@ def simulate(icon: Icon, rig: AnyRig = None, *, rate_Hz: float = 100.0, tail_s: 
     Returns
     -------
     Trace
-        Its `outcome` reports whether the rig reached the target.
+        Its `outcome` reports whether the rig reached the target. On several elements a LayoutTrace, a trace for each.
 
     Raises
     ------
     RigError
-        Where no current holds the baseline, or a run is not physical or too long.
+        Where no current holds the baseline, a run is not physical or too long, or a layout lacks an element.
 
     Examples
     --------
@@ -78,15 +90,32 @@ def simulate(icon: Icon, rig: AnyRig = None, *, rate_Hz: float = 100.0, tail_s: 
     Trace('cooling-step' on thenar, 801 rows, 8 s, skin 26.92 … 32.04 °C, -0.48 … 1.11 A)
 
     """
-    rig = Rig.of(rig, icon.context.site)
     if not (0 <= tail_s < np.inf):
         raise RigError(f"a tail of {tail_s:g} s is not possible; it must be 0 or more")
+    layout = Layout.of(rig, icon.context.site)
+    if isinstance(icon, SpatialIcon):
+        return _on_elements(icon, layout, rate_Hz, icon.duration_s + tail_s)
+    rig = layout.alone
     end = duration_s(icon, rig) + tail_s
     rows = rows_until(end, rate_Hz)
     if rig.thermode is not None:
         return play_display(icon, rig, rows, rate_Hz)
     plan, target = design(icon, rig, end), _target(icon, rig, rows)
     return _run(rig, plan.drive, plan.start_C, rows, icon.name, target, icon.context.control, plan.outcome)
+
+
+def _on_elements(icon: SpatialIcon, layout: Layout, rate_Hz: float, end_s: float) -> LayoutTrace:
+    """Play each element's track on its rig until a common end; the rest of the elements rest."""
+    layout.check_elements(icon.context.elements)
+    still = Icon(icon.name, (Rest(icon.duration_s),), replace(icon.context, elements=()))
+    pairs = [(icon.tracks.get(element.name, still), element.rig) for element in layout.elements]
+    runs: dict[tuple[tuple[Statement, ...], Rig], Trace] = {}
+    for track, rig in pairs:  # elements that are and play alike are computed once
+        if (track.statements, rig) not in runs:
+            tail = max(0.0, end_s - duration_s(track, rig))
+            runs[track.statements, rig] = simulate(track, rig, rate_Hz=rate_Hz, tail_s=tail)
+    found = [runs[track.statements, rig] for track, rig in pairs]
+    return LayoutTrace(icon.name, tuple(zip((element.name for element in layout.elements), found, strict=True)))
 
 
 def duration_s(icon: Icon, rig: Rig) -> float:

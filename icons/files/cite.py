@@ -36,6 +36,7 @@ def methods(icons: IconSet, rig_about: str | None = None, people: str = "") -> s
 
     ``rig_about`` describes the rig, as ``Rig.about`` does, and ``people`` who is predicted to feel; empty: not told.
     """
+    icons.check_one_element()
     many, control = len(icons) > 1, icons.context.control
     title = f" of the set “{icons.title}”" if icons.title else ""
     count = counted(len(icons), "thermal icon")

@@ -12,6 +12,7 @@ from ..model.format import Holes
 from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.parameter import Path
+from ..model.spatial import Part, SpatialIcon, Together
 from ..model.statements import Play, Repeat, Return, Statement
 
 _SAME_AS_LEFT_OUT = {"direction": "change", "cut": False}
@@ -40,11 +41,12 @@ def to_json(icons: IconSet) -> str:
     """
     context = icons.context
     head = {"name": icons.name or None, "title": icons.title or None, "site": context.site, "control": context.control}
+    level = {"elements": list(context.elements) or None, "baseline_C": context.baseline_C}
     document = {
         "format": "thermicon cue",
         "version": 1,
-        "set": _given({**head, "baseline_C": context.baseline_C, **_metadata(icons.metadata)}),
-        "icons": [_icon(entry) for entry in icons.entries],
+        "set": _given({**head, **level, **_metadata(icons.metadata)}),
+        "icons": [*map(_icon, icons.entries), *map(_spatial, icons.spatial)],
     }
     return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
 
@@ -63,7 +65,20 @@ def _icon(entry: Icon | Family) -> dict[str, Any]:
     return _given({**head, "parameters": parameters, "statements": body})
 
 
-def _statement(part: Statement, holes: Holes, owner: Icon | Family, path: Path = ()) -> dict[str, Any]:
+def _spatial(icon: SpatialIcon) -> dict[str, Any]:
+    parts = [_part(part, icon) for part in icon.parts]
+    return _given({"name": icon.name, **_metadata(icon.metadata), "statements": parts})
+
+
+def _part(part: Part, owner: SpatialIcon) -> dict[str, Any]:
+    if isinstance(part, Together):
+        return {"do": "together", "statements": [_part(each, owner) for each in part.parts]}
+    every = {"every_s": every_s} if (every_s := getattr(part, "every_s", None)) is not None else {}
+    body = [_statement(each, {}, owner) for each in part.body]
+    return {"do": type(part).__name__.lower(), "elements": list(part.names), **every, "statements": body}
+
+
+def _statement(part: Statement, holes: Holes, owner: Icon | Family | SpatialIcon, path: Path = ()) -> dict[str, Any]:
     values = {field.name: getattr(part, field.name) for field in fields(part) if field.name != "span"}
     values = {name: value for name, value in values.items() if value is not None}
     values.update({name: {"parameter": holes[path, name]} for name in values if (path, name) in holes})

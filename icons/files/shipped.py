@@ -14,7 +14,8 @@ from ..language.source import MOST_BYTES
 from ..model.errors import whole_file
 from ..model.family import Family
 from ..model.icon import Icon
-from ..model.iconset import IconSet, UnknownIcon
+from ..model.iconset import Entry, IconSet, UnknownIcon
+from ..model.spatial import SpatialIcon
 from ..model.words import nearest
 from .bytes_of import bytes_of
 
@@ -46,7 +47,7 @@ class Library(Mapping[str, IconSet]):
         """Name, number of icons, title, intent and source of every set."""
         found = []
         for name, icons in self.sets:
-            means = dict.fromkeys(filter(None, (entry.metadata.means for entry in icons.entries)))
+            means = dict.fromkeys(filter(None, (each.metadata.means for each in (*icons.entries, *icons.spatial))))
             source = "; ".join(filter(None, (icons.metadata.by, icons.metadata.doi))) or "not stated"
             found.append(ShippedSet(name, len(icons), icons.title, icons.metadata.means or "; ".join(means), source))
         return tuple(found)
@@ -137,23 +138,27 @@ def load_library(name: str) -> IconSet:
     return parse(FOLDER.joinpath(f"{name}.cue").read_bytes(), f"{name}.cue")
 
 
-Icons = IconSet | Icon | Family | Iterable[Icon | Family] | str | Path
+Icons = IconSet | Entry | Iterable[Entry] | str | Path
 """What is taken where a set is needed: the set, its name or file, or icons."""
 
 
 def set_of(icons: Icons) -> IconSet:
-    """A set as it is, by its name or file, or of icons."""
-    if isinstance(icons, str | Path):
-        return read_cue(icons)
-    return icons if isinstance(icons, IconSet) else IconSet.of(icons)
+    """A set as it is, by its name or file, or of icons; SeveralElements for one on several elements."""
+    found = read_cue(icons) if isinstance(icons, str | Path) else icons
+    found = found if isinstance(found, IconSet) else IconSet.of(found)
+    found.check_one_element()
+    return found
 
 
 def icons_of(icons: Icons) -> tuple[Icon, ...]:
     """The icons of what `set_of` takes, members of families among them; their contexts may differ."""
-    if isinstance(icons, IconSet | Family | str | Path):
+    if isinstance(icons, IconSet | Family | SpatialIcon | str | Path):
         return tuple(set_of(icons))
     given = (icons,) if isinstance(icons, Icon) else icons
-    return tuple(icon for each in given for icon in (each if isinstance(each, Family) else (each,)))
+    found: list[Icon] = []
+    for each in given:
+        found += [each] if isinstance(each, Icon) else each if isinstance(each, Family) else set_of(each)
+    return tuple(found)
 
 
 def by_name(icons: Icons) -> dict[str, Icon]:

@@ -7,13 +7,14 @@ from math import prod
 from typing import Any, cast
 
 from ..model.check import ASSUMED_BASELINE_C, MOST_CORNERS, Problem, corner_count, survey
-from ..model.context import Context, Metadata
+from ..model.context import Context, Metadata, elements_fault
 from ..model.errors import MOST_ERRORS
 from ..model.family import FEWER, MOST_MEMBERS, Family
 from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.members import MOST_EFFORT, MOST_FAILING, FailedMember, MemberErrors, effort
 from ..model.parameter import path_of, statement_at
+from ..model.spatial import SpatialIcon, bodies_of
 from ..model.statements import Broken, Repeat, Return, Statement
 from ..model.units import Control, exact
 from ..model.words import CONTROLS, nearest
@@ -50,6 +51,7 @@ class _Assembler:
         self.name = self.title = ""
         self.metadata = Metadata()
         self.site: str | None = None
+        self.elements: tuple[str, ...] | None = ()
         # None below means "not readable", so that one mistake does not draw others after it.
         self.control: Control | None = "skin"
         self.baseline: float | None = None
@@ -58,6 +60,7 @@ class _Assembler:
         self.index: dict[str, int] = {}
         self.drafts: dict[int, IconDraft] = {}
         self.icons: dict[int, Icon | Family | None] = {}
+        self.spatial: list[SpatialIcon] = []
         self.playing: list[int] = []
         self.corners = self.members = self.effort = 0
         self.unread = False
@@ -81,10 +84,11 @@ class _Assembler:
         if findings or more:
             return Analysis(None, tuple(findings), more)
         icons = tuple(icon for icon in made if icon is not None)
-        return Analysis(IconSet(self.name, self.title, self.context(), self.metadata, icons), (), 0)
+        spatial = tuple(self.spatial)
+        return Analysis(IconSet(self.name, self.title, self.context(), self.metadata, icons, spatial), (), 0)
 
     def context(self) -> Context:
-        return Context(self.control or "skin", self.baseline, self.site)
+        return Context(self.control or "skin", self.baseline, self.site, self.elements or ())
 
     def version(self, parts: list[Any], kinds: list[str]) -> None:
         help = "the first line of every file is: cue 1"
@@ -123,7 +127,7 @@ class _Assembler:
 
     def settings(self, tree: Any) -> None:
         seen: dict[str, int] = {}
-        metadata = []
+        metadata, named = [], None
         for part in tree.children:
             rule = str(getattr(part, "data", part.type if hasattr(part, "type") else ""))
             if rule == "NAME":
@@ -140,6 +144,9 @@ class _Assembler:
                 seen[rule], value = span(part)[0], part.children[0]
                 if rule == "site":
                     self.site = str(value)
+                elif rule == "elements":
+                    self.elements = tuple(map(str, part.children))
+                    named = part
                 elif rule == "control":
                     self.control = cast(Control | None, self.builder.choice(value, CONTROLS, "E215", "a control"))
                 else:
@@ -149,6 +156,10 @@ class _Assembler:
         if any(getattr(part, "type", "") == "BROKEN" for part in tree.children):
             self.control = self.control if "control" in seen else None
             self.baseline_known = self.baseline_known and "baseline" in seen
+            self.elements = self.elements or None
+        if named is not None and (wrong := elements_fault(self.elements or (), self.control or "skin")):
+            self.builder.add("E239", span(named), *wrong)
+            self.elements = None  # not known, so that icons draw no errors after it
         self.metadata = self.builder.metadata(metadata)
 
     def names(self, drafts: list[IconDraft]) -> None:
@@ -179,7 +190,7 @@ class _Assembler:
         """Return the icon or family at a place in the file; None, and findings, when something is wrong with it."""
         if place not in self.icons:
             self.playing.append(place)
-            self.drafts[place] = icon_draft(self.builder, self.trees[place], self.resolve)
+            self.drafts[place] = icon_draft(self.builder, self.trees[place], self.resolve, self.elements)
             self.icons[place] = self.meaning(self.drafts[place])
             self.playing.pop()
         return self.icons[place]
@@ -223,11 +234,16 @@ class _Assembler:
             return None
         corners = corner_count(draft.body)
         self.corners += corners if corners <= MOST_CORNERS else 0
+        if draft.parts:
+            self.corners += sum(corner_count(body.body) * len(body.names) for body in bodies_of(draft.parts))
         if self.corners > MOST_CORNERS_A_FILE:
             what = f"written out, the icons up to here have {self.corners:,} corners"
             self.builder.add("E220", draft.place, what, f"a file has at most {MOST_CORNERS_A_FILE:,} corners")
             return None
         if self.control is None:
+            return None
+        if self.elements:
+            self.several(draft, before)
             return None
         self.returns(draft.body)
         wrong, right = ("rate", "A/s") if self.control == "current" else ("current_rate", "°C/s")
@@ -243,6 +259,31 @@ class _Assembler:
         if len(self.builder.findings) > before or self.unsound(draft):
             return None
         return Icon(cast(str, draft.name), cast(Body, draft.body), self.context(), draft.metadata)
+
+    def several(self, draft: IconDraft, before: int) -> None:
+        """Check what an icon on several elements means; keep it, or add findings."""
+        if draft.over is not None and not draft.over.unread and len(self.builder.findings) == before:
+            what = "a family in a set with elements is not in this version"
+            self.builder.add("E120", draft.place, what, "write each of its icons out")
+        rest = self.rest()
+        for body in bodies_of(draft.parts):
+            self.returns(body.body)
+            course = survey(body.body, cast(Control, self.control), rest)
+            for problem in course.problems:
+                self.add(problem, draft)
+            if not course.problems and course.timed and course.level != rest:
+                last = self.builder.places[id(body.body[-1])]["whole"]
+                help = 'what elements play begins and ends at baseline: add a line such as "return at 3 °C/s"'
+                cure = Patch(last[1], last[1], "; return at 3 °C/s")
+                self.builder.add("E240", last, "this body ends away from baseline", help, cure)
+        sound = draft.name is not None and draft.parts and not draft.unread and self.baseline_known
+        if len(self.builder.findings) > before or not sound:
+            return
+        try:
+            self.spatial.append(SpatialIcon(cast(str, draft.name), draft.parts, self.context(), draft.metadata))
+        except ValueError as wrong:
+            what, _, help = str(wrong).removeprefix(f"icon {draft.name} ").partition("; ")
+            self.builder.add("E221", draft.place, f"this icon {what}", help)
 
     def family(self, draft: IconDraft, before: int) -> Family | None:
         """Return the family of a draft, every member checked; None, with findings, when one of them is not valid."""

@@ -8,6 +8,7 @@ from ..model.context import Metadata
 from ..model.icon import Icon
 from ..model.members import HOLE
 from ..model.parameter import Path, Slot, value_fault
+from ..model.spatial import Part
 from ..model.statements import (
     Bound,
     Broken,
@@ -32,6 +33,7 @@ from ..model.words import nearest
 from .build import Builder, FamilyParameters, Place, parameters_of, rule_of, span
 from .failed_statement import short
 from .source import Patch
+from .spatial_bodies import BLOCKS, spatial_parts
 
 _USES: dict[str, tuple[Kind, ...]] = {
     "by_use": ("change", "current"),
@@ -56,7 +58,10 @@ Resolve = Callable[[str, Place], Icon | None]
 
 @dataclass(frozen=True, slots=True)
 class IconDraft:
-    """An icon or family as written; ``over`` are the parameters of a family, ``slots`` where they stand in it."""
+    """An icon or family as written; ``over`` are the parameters of a family, ``slots`` where they stand in it.
+
+    In a set with elements it has ``parts`` in place of a body; ``unread``: some of them could not be read.
+    """
 
     name: str | None
     place: Place
@@ -64,29 +69,38 @@ class IconDraft:
     body: tuple[Statement | Broken, ...]
     over: FamilyParameters | None = None
     slots: tuple[Slot, ...] = ()
+    parts: tuple[Part, ...] = ()
+    unread: bool = False
 
 
-def icon_draft(builder: Builder, tree: Any, resolve: Resolve) -> IconDraft:
-    """Return an icon or family from its tree; ``resolve`` finds the icon that a ``play`` names, or adds a finding."""
+def icon_draft(builder: Builder, tree: Any, resolve: Resolve, elements: tuple[str, ...] | None = ()) -> IconDraft:
+    """Return an icon or family from its tree; ``resolve`` finds the icon that a ``play`` names, or adds a finding.
+
+    ``elements`` are those of the set, None when they could not be read.
+    """
     head, *parts = tree.children
     name = str(head) if head.type == "NAME" else None
     keys = [part for part in parts if rule_of(part) == "metadata"]
     listed = [part for part in parts if rule_of(part) == "parameters"]
     place = span(head) if name else span(tree)
     over = parameters_of(builder, listed[0]) if listed else None
-    scope = _Scope(builder, resolve, over, known=name is not None)
-    body = scope.body([part for part in parts if rule_of(part) not in ("metadata", "parameters")], ())
-    if not body:
+    scope = Scope(builder, resolve, over, known=name is not None, elements=elements)
+    rows = [part for part in parts if rule_of(part) not in ("metadata", "parameters")]
+    spatial = spatial_parts(scope, rows, elements) if elements else ()
+    body = () if elements else scope.body(rows, ())
+    if not rows:
         what = "there is nothing between the braces"
         builder.add("E217", place, what, 'an icon needs a statement, such as "cool by 6 °C at 3 °C/s"')
     metadata = builder.metadata(keys)
     if over is not None:
         scope.finish(over, keys, metadata)
-    return IconDraft(name, place, metadata, body, over, tuple(scope.slots))
+    return IconDraft(name, place, metadata, body, over, tuple(scope.slots), spatial, scope.broken)
 
 
 @dataclass(slots=True)
-class _Scope:
+class Scope:
+    """Reads the bodies of one icon."""
+
     builder: Builder
     resolve: Resolve
     over: FamilyParameters | None
@@ -94,6 +108,8 @@ class _Scope:
     slots: list[Slot] = field(default_factory=list)
     used: set[str] = field(default_factory=set)
     broken: bool = False
+    elements: tuple[str, ...] | None = ()
+    told: bool = False
 
     def body(self, parts: Iterable[Any], path: Path) -> tuple[Statement | Broken, ...]:
         """Return statements in order, with Broken for each that could not be read."""
@@ -102,21 +118,42 @@ class _Scope:
     def statement(self, tree: Any, path: Path) -> Statement | Broken:
         """Return one statement, and remember the places of its parts."""
         builder, place = self.builder, span(tree)
-        made: Statement | Broken | None
+        made: Statement | Broken | None = None
         if rule_of(tree) == "repeat":
             made = self.repeat(tree, path)
+        elif rule_of(tree) in BLOCKS:
+            self.block(rule_of(tree), (place[0], place[0] + len(rule_of(tree))))
+        elif self.elements and rule_of(tree) in ("play", "total"):
+            self.not_on_elements(rule_of(tree), place)
         elif rule_of(tree) == "play":
             icon = self.resolve(str(tree.children[0]), span(tree.children[0]))
             made = Play(icon, builder.at(place)) if icon else None
         elif rule_of(tree):
             made = self.leaf(tree, path)
-        else:
-            made = None
         self.broken |= made is None
         made = Broken(builder.at(place)) if made is None else made
         builder.kept.append(made)
         builder.places[id(made)] = builder.parts(tree, place)
         return made
+
+    def block(self, word: str, place: Place) -> None:
+        """Report a block for elements where there are none, or inside of another block."""
+        if self.elements:
+            help = f'put "{word}" directly between the braces of the icon'
+            self.builder.add("E237", place, f'"{word}" stands inside another block', help)
+        elif self.elements is not None and not self.told:
+            help = "name them in the set: set { elements left, right }; for one element, write its statements alone"
+            self.builder.add("E234", place, f'"{word}" needs elements, and this set names none', help)
+            self.told = True
+
+    def not_on_elements(self, word: str, place: Place) -> None:
+        """Report a statement that elements cannot take."""
+        if word == "total":
+            help = "an icon lasts as long as its parts: remove the total"
+            self.builder.add("E229", place, "a total has no place in a set with elements", help)
+        else:
+            what = '"play" in a set with elements is not in this version'
+            self.builder.add("E120", place, what, "write the statements of that icon here")
 
     def leaf(self, tree: Any, path: Path) -> Statement | None:
         """Return the statement for a tree, or None, and findings, when its numbers are not all in order."""

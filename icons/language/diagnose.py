@@ -3,7 +3,8 @@
 import re
 from dataclasses import replace
 
-from ..model.words import LACKING, NOT_YET, QUOTES, VOCABULARY, nearest
+from ..model.words import LACKING, QUOTES, VOCABULARY, nearest
+from .diagnose_elements import elements
 from .diagnose_family import family
 from .diagnose_number import not_a_number, notation, unit
 from .diagnose_word import connective, extra, joined, pace, peaks, unit_twice, word
@@ -34,11 +35,8 @@ def diagnose(case: FailedStatement) -> Finding:
 
 
 def not_yet(case: FailedStatement) -> Finding | None:
-    """Words that the language reserves, or does not have on purpose."""
+    """A target that the language does not have on purpose."""
     bad = case.bad
-    if case.first in NOT_YET and case.index == 0:
-        help = NOT_YET[case.first]
-        return at(bad, "E120", f'"{case.first}" is planned, but not in this version', help)
     if bad.text == "baseline" and case.where in ("icon", "repeat") and case.before is not None:
         what = "baseline is not a target in this version"
         if case.first == "step":
@@ -168,7 +166,7 @@ def _keys() -> str:
 
 
 _RULES = (
-    *(not_yet, quotes, text, family, unit_twice, notation, unit, not_a_number, comment, joined, character),
+    *(not_yet, quotes, text, elements, family, unit_twice, notation, unit, not_a_number, comment, joined, character),
     *(opening, block, name),
     *(word, peaks, extra, pace, connective),
 )

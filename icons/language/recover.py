@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from lark import Token, Tree
 
 DEEPEST = 20
-_OPENERS = {"ICON": "icon", "SET": "set", "REPEAT": "repeat"}
+_OPENERS = {"ICON": "icon", "SET": "set", **dict.fromkeys(("REPEAT", "ON", "TOGETHER", "ALONG"), "repeat")}
 _BRACED = re.compile(r"\{[ \t]*([^\W\d_][\w-]*)[ \t]*\}")
 _CELL = re.compile(r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?")
 _LISTED = re.compile(r"[\w .-]+([,\t][\w .-]+)+")

@@ -80,7 +80,8 @@ def survey(
     found = _Survey(control, rest, played={} if played is None else played)
     if rest is not None:
         found.lowest = found.highest = float(rest)
-    _, duration = found.run(body, rest)
+    found.level, duration = found.run(body, rest)
+    found.duration = duration
     found.duration_s = seconds = float(duration)  # Fractions are compared only where floats leave a doubt
     if seconds >= LONGEST_S and duration > LONGEST_S:
         what = f"this icon lasts {seconds:,.6g} s"
@@ -95,7 +96,7 @@ def survey(
 
 @dataclass(slots=True)
 class _Survey:
-    """What a body does: its problems, duration (s), extreme levels (°C or A) and steepest slope (K/s or A/s)."""
+    """What a body does: its problems, duration (s), levels (°C or A: last, extreme) and steepest slope (K/s or A/s)."""
 
     control: Control
     rest: Fraction | None
@@ -105,6 +106,8 @@ class _Survey:
     # Behind a statement that could not be read, the duration of the icon is unknown.
     timed: bool = True
     duration_s: float = 0.0
+    duration: Fraction = Fraction(0)
+    level: Fraction | None = None
     lowest: float = math.inf
     highest: float = -math.inf
     steepest_per_s: float = 0.0

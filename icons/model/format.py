@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from .family import Family
     from .icon import Icon
     from .iconset import IconSet
+    from .spatial import Part, SpatialIcon
 
 Holes = Mapping[tuple[Path, str], str]
 _GOALS: tuple[tuple[str, Kind], ...] = (
@@ -115,14 +116,15 @@ class _Writer:
         assert_never(part)
 
 
-def icon_text(icon: "Icon | Family") -> str:
+def icon_text(icon: "Icon | Family | SpatialIcon") -> str:
     """Return the complete text of a file that holds this icon or family, after the icons that it plays."""
-    return _file(_set_lines("", "", icon.context, None), [*_needed(icon, {}).values(), icon])
+    needed = [] if hasattr(icon, "parts") else list(_needed(icon, {}).values())
+    return _file(_set_lines("", "", icon.context, None), [*needed, icon])
 
 
 def set_text(icons: "IconSet") -> str:
     """Return the complete text of the file of a set."""
-    return _file(_set_lines(icons.name, icons.title, icons.context, icons.metadata), icons.entries)
+    return _file(_set_lines(icons.name, icons.title, icons.context, icons.metadata), (*icons.entries, *icons.spatial))
 
 
 def quoted(text: str) -> str:
@@ -143,7 +145,7 @@ def _body(icon: "Icon | Family") -> tuple[Statement, ...]:
     return icon.template if hasattr(icon, "template") else icon.statements
 
 
-def _file(set_lines: list[str], icons: "Iterable[Icon | Family]") -> str:
+def _file(set_lines: list[str], icons: "Iterable[Icon | Family | SpatialIcon]") -> str:
     blocks = ["cue 1"]
     if set_lines:
         blocks.append("\n".join(set_lines))
@@ -152,9 +154,22 @@ def _file(set_lines: list[str], icons: "Iterable[Icon | Family]") -> str:
         parameters = list(map(str, getattr(icon, "parameters", ())))
         header = header_lines(f"icon {icon.name}", parameters, metadata_texts(icon.metadata))
         holes = {(slot.path, slot.field): slot.parameter for slot in slots}
-        body = [statement_text(part, icon.context.control, "  ", holes, (n,)) for n, part in enumerate(_body(icon))]
+        if hasattr(icon, "parts"):
+            body = [_part_text(part, icon.context, "  ") for part in icon.parts]
+        else:
+            body = [statement_text(part, icon.context.control, "  ", holes, (n,)) for n, part in enumerate(_body(icon))]
         blocks.append("\n".join([*header, *body, "}"]))
     return "\n\n".join(blocks) + "\n"
+
+
+def _part_text(part: "Part", context: "Context", indent: str) -> str:
+    if hasattr(part, "parts"):
+        head, body = "together", [_part_text(each, context, indent + "  ") for each in part.parts]
+    else:
+        names = "all" if part.names == context.elements else ", ".join(part.names)
+        head = f"along {names} every {quantity(part.every_s, 'time')}" if hasattr(part, "every_s") else f"on {names}"
+        body = [statement_text(each, context.control, indent + "  ") for each in part.body]
+    return "\n".join([f"{indent}{head} {{", *body, f"{indent}}}"])
 
 
 def header_lines(head: str, parameters: Sequence[str], keys: Sequence[str]) -> list[str]:
@@ -172,7 +187,8 @@ def header_lines(head: str, parameters: Sequence[str], keys: Sequence[str]) -> l
 
 
 def _set_lines(name: str, title: str, context: "Context", metadata: "Metadata | None") -> list[str]:
-    lines = [f"  site {context.site}"] if context.site is not None else []
+    lines = [f"  elements {', '.join(context.elements)}"] if context.elements else []
+    lines += [f"  site {context.site}"] if context.site is not None else []
     if context.control != "skin":
         lines.append(f"  control {context.control}")
     if context.baseline_C is not None:

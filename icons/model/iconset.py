@@ -17,11 +17,17 @@ from .family import Family
 from .format import set_text
 from .icon import Icon, content_hash
 from .members import Extremes
+from .spatial import SpatialIcon
 from .statements import played_icons
 from .units import quantity
 from .words import nearest
 
 _MOST_NAMES = 50
+Entry = Icon | Family | SpatialIcon
+
+
+class SeveralElements(InputError):
+    """A set for several elements was given where one for a single element is needed."""
 
 
 class UnknownIcon(KeyError):
@@ -75,6 +81,8 @@ class IconSet(Drawn):
         Intent, author, DOI, licence and tags of the set.
     entries
         Icons and families in the order of the file; ``icons`` has every icon, with the members of the families.
+    spatial
+        Icons on several elements, in place of entries where the context names elements.
 
     Raises
     ------
@@ -94,10 +102,11 @@ class IconSet(Drawn):
     context: Context
     metadata: Metadata
     entries: tuple[Icon | Family, ...]
+    spatial: tuple[SpatialIcon, ...] = ()
 
     @classmethod
     @checked
-    def of(cls, icons: Icon | Family | Iterable[Icon | Family], name: str = "", title: str = "") -> "IconSet":
+    def of(cls, icons: Entry | Iterable[Entry], name: str = "", title: str = "") -> "IconSet":
         """Return a set of icons that have a context in common: one icon, or several in their order.
 
         >>> from thermicon.icons import back, cool, warm
@@ -105,10 +114,12 @@ class IconSet(Drawn):
         >>> IconSet.of([dip, glow], "alerts")
         <IconSet alerts: 2 icons, 4 to 6 s, control skin>
         """
-        entries = (icons,) if isinstance(icons, Icon | Family) else tuple(icons)
-        if not entries:
+        given = (icons,) if isinstance(icons, Entry) else tuple(icons)
+        if not given:
             raise InputError("a set needs at least one icon")
-        return cls(name, title, entries[0].context, Metadata(), entries)
+        entries = tuple(icon for icon in given if not isinstance(icon, SpatialIcon))
+        spatial = tuple(icon for icon in given if isinstance(icon, SpatialIcon))
+        return cls(name, title, given[0].context, Metadata(), entries, spatial)
 
     @checked
     def save(self, path: str | Path) -> None:
@@ -120,14 +131,17 @@ class IconSet(Drawn):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "entries", tuple(self.entries))
+        object.__setattr__(self, "spatial", tuple(self.spatial))
         if self.name and (wrong := name_fault(self.name)):
             raise ValueError(f"set: {wrong}")
         if self.title and (wrong := text_fault(self.title)):
             raise ValueError(f"title: {wrong}")
-        if not self.entries:
+        if not (self.entries or self.spatial):
             raise ValueError("a set needs at least one icon")
-        known: dict[str, Icon | Family] = {}
-        for entry in self.entries:
+        if self.entries if self.context.elements else self.spatial:
+            raise ValueError("a set that names elements has spatial icons, and nothing but them; others have none")
+        known: dict[str, Entry] = {}
+        for entry in (*self.entries, *self.spatial):
             if entry.name in known:
                 raise ValueError(f"two icons are called {entry.name}; give each a name of its own")
             if entry.context != self.context:
@@ -146,8 +160,20 @@ class IconSet(Drawn):
 
     @property
     def icons(self) -> Members:
-        """Every icon, with the members of families, as a sequence that makes them when asked for."""
+        """Every icon, with the members of families, as a sequence that makes them when asked for.
+
+        Raises SeveralElements, with a cure, for a set whose icons are on several elements.
+        """
+        self.check_one_element()
         return Members(self.entries)
+
+    def check_one_element(self) -> None:
+        """Raise SeveralElements, with a cure, for a set whose icons are on several elements."""
+        if self.spatial:
+            raise SeveralElements(
+                f"{self.name or 'this set'} is for several elements ({', '.join(self.context.elements)}), which only "
+                'check, convert, simulate and pictures take yet; for one element, leave out "elements" and "on"'
+            )
 
     @property
     def families(self) -> tuple[Family, ...]:
@@ -162,6 +188,10 @@ class IconSet(Drawn):
     def summary(self, start: float | None = None) -> Extremes:
         """Return durations, extremes and steepest rate over all icons; ``start`` as in ``Icon.corners``."""
         found = []
+        for icon in self.spatial:
+            lasts = icon.duration_s
+            for one in (track.corners(start) for track in icon.tracks.values()):
+                found.append(Extremes(lasts, lasts, one.lowest, one.highest, one.steepest_per_s))
         for entry in self.entries:
             if isinstance(entry, Family):
                 found.append(entry.summary(start))
@@ -171,7 +201,7 @@ class IconSet(Drawn):
         return reduce(Extremes.joined, found)
 
     def __len__(self) -> int:
-        return len(self.icons)
+        return len(self.spatial) or len(self.icons)
 
     def __iter__(self) -> Iterator[Icon]:
         return iter(self.icons)
@@ -182,6 +212,7 @@ class IconSet(Drawn):
         return item in self.entries if isinstance(item, Family) else isinstance(item, str) and bool(self.find(item))
 
     def __getitem__(self, name: str) -> Icon:
+        self.check_one_element()
         found = self.find(str(name))
         if found is not None:
             return found
@@ -216,5 +247,6 @@ class IconSet(Drawn):
         if found.longest_s > found.shortest_s:
             length += f" to {found.longest_s:.6g}"
         baseline = self.context.baseline_C
+        on = f" on {', '.join(self.context.elements)}" if self.spatial else ""
         rest = f", baseline {quantity(baseline, 'absolute')}" if baseline is not None else ""
-        return f"<IconSet {self.name or '(unnamed)'}: {count}, {length} s, control {self.context.control}{rest}>"
+        return f"<IconSet {self.name or '(unnamed)'}: {count}{on}, {length} s, control {self.context.control}{rest}>"

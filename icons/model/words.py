@@ -13,29 +13,32 @@ from .units import UNITS, Control, Kind, decimal_text, exact_number
 
 _KEYS = ("means", "by", "doi", "licence", "tags")
 WAVES: tuple[str, ...] = get_args(Shape)
-_STATEMENTS = (
-    "cool",
-    "warm",
-    "change",
-    "hold",
-    "rest",
-    "return",
-    "step",
-    "pulse",
-    *WAVES,
-    "repeat",
-    "play",
-    "total",
-    "to",
-)
+_MOVES = ("cool", "warm", "change", "hold", "rest", "return", "step", "pulse")
+_STATEMENTS = (*_MOVES, *WAVES, "repeat", "on", "together", "along", "play", "total", "to")
 VOCABULARY: dict[str, tuple[str, ...]] = {
     "file": ("cue", "set", "icon"),
-    "set": ("site", "control", "baseline", *_KEYS),
+    "set": ("site", "control", "baseline", "elements", *_KEYS),
     "icon": _STATEMENTS,
     "repeat": _STATEMENTS,
     "header": _KEYS,
 }
-CLAUSES = ("by", "to", "at", "over", "for", "every", "in", "step", "starting", "cut", "most", "least", "up", "down")
+CLAUSES = (
+    "by",
+    "to",
+    "at",
+    "over",
+    "for",
+    "every",
+    "in",
+    "step",
+    "starting",
+    "cut",
+    "most",
+    "least",
+    "up",
+    "down",
+    "all",
+)
 """Words within a statement, after the first."""
 CONTROLS: tuple[str, ...] = get_args(Control)
 
@@ -47,7 +50,6 @@ def _meant(name: str) -> dict[str, str]:
     return {written: meant for meant, listed in _TABLES[name].items() for written in listed.split()}
 
 
-NOT_YET: dict[str, str] = _TABLES["not_yet"]
 EXAMPLES: dict[str, str] = _TABLES["examples"]
 """Examples of kinds of quantity and of statements."""
 WORD_ALIASES, STARTS, BOUNDS, NUMBER_WORDS = map(_meant, ("words", "starts", "bounds", "numbers"))

@@ -14,6 +14,7 @@ from thermicon.base.results.drawn import Drawn
 from ..model.family import Family
 from ..model.icon import Icon
 from ..model.iconset import IconSet
+from ..model.spatial import SpatialIcon
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,9 +41,16 @@ def plot(drawn: Drawn, ax: Axes | None = None) -> Axes:
     """Draw the level (°C, or A under control current) against time in s, and return the Axes.
 
     One icon is coloured by direction, its steps thinner than ramps. Of a family or a set up to 24 icons are drawn over
-    one another; up to 8 have a colour and a dash each and a legend, more are coloured by direction. Without ``ax`` a
-    new figure is made, outside of pyplot; nothing is shown or saved.
+    one another; up to 8 have a colour and a dash each and a legend, more are coloured by direction. On several elements
+    each element has a row. Without ``ax`` a new figure is made, outside of pyplot; nothing is shown or saved.
     """
+    if isinstance(drawn, SpatialIcon):
+        return _rows([(name, track) for name, track in drawn.tracks.items()], drawn.name, ax)
+    if isinstance(drawn, IconSet) and drawn.spatial:
+        tracks = [(f"{icon.name}: {name}", track) for icon in drawn.spatial for name, track in icon.tracks.items()]
+        more = f" ({MOST_DRAWN} of {len(tracks)} rows drawn)" if len(tracks) > MOST_DRAWN else ""
+        title = drawn.title or drawn.name or icon_count(len(drawn))
+        return _rows(tracks[:MOST_DRAWN], _short(title) + more, ax)
     if isinstance(drawn, Icon):
         return _overlay([drawn], [], drawn.name, ax)
     if isinstance(drawn, Family):
@@ -152,6 +160,36 @@ def _overlay(icons: Sequence[Icon], labels: Sequence[str], title: str, ax: Axes 
             legend.set_bbox_to_anchor((1.01, 0.5))
         for text in legend.get_texts():
             text.set_parse_math(False)
+    return ax
+
+
+def _rows(tracks: Sequence[tuple[str, Icon]], title: str, ax: Axes | None) -> Axes:
+    """Draw each track in a row of its own on one time axis, the first on top, coloured by direction."""
+    from matplotlib.collections import LineCollection
+    from matplotlib.figure import Figure
+
+    if ax is None:
+        ax = Figure(figsize=(6.0, 1.2 + 0.6 * len(tracks)), layout="constrained").add_subplot()
+    courses = [track.corners() for _, track in tracks]
+    low = min(each.lowest - each.value[0] for each in courses)
+    high = max(each.highest - each.value[0] for each in courses)
+    height = 1.25 * max(high - low, 1.0)
+    longest = max(each.duration_s for each in courses)
+    rests = [-place * height for place in range(len(tracks))]
+    for rest, course in zip(rests, courses, strict=True):
+        points = list(zip(course.time_s, (value - course.value[0] + rest for value in course.value), strict=True))
+        ways = [COLOURS[way] for way in directions(course)]
+        ax.add_collection(LineCollection(list(pairwise(points)), colors=ways, linewidths=2.5, capstyle="round"))
+        ax.axhline(rest, color="#999999", linestyle="--", linewidth=1, zorder=1)
+    ax.set_xlim(-0.015 * longest, 1.015 * longest)
+    ax.set_ylim(rests[-1] + low - 0.15 * height, high + 0.15 * height)
+    ax.set_yticks(rests, [_short(name, 32) for name, _ in tracks])
+    for text in ax.get_yticklabels():
+        text.set_parse_math(False)
+    ax.set_title(_short(title), fontsize=11).set_parse_math(False)
+    ax.set_xlabel("time (s)")
+    ax.set_ylabel(f"{tracks[0][1].context.control} temperature ({high - low:.3g} K from low to high)")
+    ax.spines[["top", "right"]].set_visible(False)
     return ax
 
 

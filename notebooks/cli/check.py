@@ -108,7 +108,7 @@ def check(files: Sequence[str]) -> None:
         fail("\n\n".join(problems))
     for line in lines:
         typer.echo(line)
-    if len(files) == 1:
+    if len(files) == 1 and not icons.spatial:
         note(f"Next: {command_text(files, paths=True, command='rank' if 1 < len(icons) <= MOST_ICONS else 'simulate')}")
 
 
@@ -118,8 +118,15 @@ def summary(icons: IconSet) -> str:
     unit, digits = ("A", 2) if current else ("°C", 1)
     found = icons.summary(0.0 if current else START_C)
     parts = [
-        f"{len(icons):,} icon{'' if len(icons) == 1 else 's'}",
+        f"{len(icons):,} icon{'' if len(icons) == 1 else 's'}{_where(icons)}",
         span(found.shortest_s, found.longest_s, "s"),
         span(found.lowest, found.highest, unit, digits),
     ]
     return ", ".join([*parts, f"steepest {number(found.steepest_per_s, 2)} {unit}/s"])
+
+
+def _where(icons: IconSet) -> str:
+    """On which elements, and how many different tracks they play."""
+    tracks = {track.statements for icon in icons.spatial for track in icon.tracks.values()}
+    count = f"{len(tracks)} different track{'' if len(tracks) == 1 else 's'}"
+    return f" on {', '.join(icons.context.elements)} ({count})" if icons.spatial else ""

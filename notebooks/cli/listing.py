@@ -93,6 +93,7 @@ def copy_shipped(name: str, output: Path, changes: Sequence[str] = ()) -> None:
 
     from thermicon.base.words.near_words import did_you_mean
     from thermicon.circuit.delivery.device import device_names
+    from thermicon.circuit.rig.layout import layout_names
     from thermicon.circuit.rig.rig import rig_names
     from thermicon.icons.files.shipped import library_names
 
@@ -102,6 +103,7 @@ def copy_shipped(name: str, output: Path, changes: Sequence[str] = ()) -> None:
     kinds = (
         (library_names(), "icons", "library", "{}.cue", f"thermicon rank {own}"),
         (rig_names(), "circuit", "rigs", "{}.toml", f"thermicon rank six-icons --rig {own}"),
+        (layout_names(), "circuit", "layouts", "{}.toml", f"thermicon simulate SET --rig {own}"),
         (device_names(), "circuit", "devices", "{}.toml", f"thermicon export SET --device {own} --to FORMAT -o drives"),
         (("study", "example"), "notebooks", "data", SHIPPED,
          f"write your set, rig and device into {own}, then thermicon study {own} -o study"),
@@ -127,7 +129,8 @@ def copy_shipped(name: str, output: Path, changes: Sequence[str] = ()) -> None:
 
 def show_rigs() -> None:
     """Print the shipped rigs: site, resting temperature, blood temperature and resting heat flow."""
-    from thermicon.circuit import Rig
+    from thermicon.circuit import Layout, Rig
+    from thermicon.circuit.rig.layout import layout_names
     from thermicon.circuit.rig.rig import rig_names
 
     numbers = ("rest °C", "blood °C", "flux W/m²")
@@ -141,7 +144,10 @@ def show_rigs() -> None:
     ]
     notes = [f"{rig.name}: {warning}" for rig in rigs for warning in rig.warnings]
     said = "flux: heat flow into bare skin at rest; negative because skin loses heat."
+    layouts = [Layout.load(name) for name in layout_names()]
+    elements = [(each.name, each.title, ", ".join(one.name for one in each.elements)) for each in layouts]
     show([grid(("name", "title", "site", *numbers), rows, numbers), "\n".join([said, *notes])])
+    show([grid(("layout", "title", "elements"), elements)])
 
 
 def show_modules() -> None:
@@ -159,7 +165,7 @@ def show_icons() -> None:
 
     for position, name in enumerate(library_names()):
         icons, rows = load_library(name), []
-        for icon in icons.entries:
+        for icon in (*icons.entries, *icons.spatial):
             tags = f"({', '.join(icon.metadata.tags)})" if icon.metadata.tags else ""
             count = f", {len(icon):,} icons" if isinstance(icon, Family) else ""
             rows.append((f"  {icon.name}{count}", icon.metadata.means or "", tags))

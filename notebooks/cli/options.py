@@ -290,7 +290,7 @@ def read_set(files: Sequence[str]) -> IconSet:
     owner: dict[str, str] = {}
     for file, each in zip(files, sets, strict=True) if len(sets) > 1 else ():
         if each.context != joined.context:
-            keys = ("site", "control", "baseline_C")
+            keys = ("site", "control", "baseline_C", "elements")
             both = [(key.removesuffix("_C"), getattr(each.context, key), getattr(joined.context, key)) for key in keys]
             told = ", ".join(f"{key} {one}, not {other}" for key, one, other in both if one != other)
             raise JoinError(

@@ -6,6 +6,7 @@ import json
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -22,6 +23,7 @@ from ..report.following import after_simulating
 from ..report.gate_words import CAUTION
 from ..report.run_report import describe, headline, session_report
 from ..report.terminal import show
+from .on_elements import simulate_elements
 from .options import (
     LARGEST_SEED,
     LONGEST_TAIL_S,
@@ -42,7 +44,7 @@ from .options import (
 )
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig, Session, Trace
+    from thermicon.circuit import LayoutTrace, Rig, Session, Trace
     from thermicon.icons import IconSet
 
 LONGEST_GAP_S, MOST_PLAYS = 3600.0, 5000
@@ -70,6 +72,12 @@ class FilmOptions(FigureOptions):
         """The same for one icon of several, whose name its files have at their ends."""
         figure, film = (path and path.with_stem(f"{path.stem}-{icon}") for path in (self.figure, self.film))
         return replace(self, figure=figure, film=film)
+
+    def write_rows(self, run: LayoutTrace) -> None:
+        """Write the figure of a run on several elements."""
+        from ..figures.layout_figure import layout_figure
+
+        self.write(partial(layout_figure, run))
 
     def write_felt(self, trace: Trace, rig: Rig) -> None:
         """Write the figure and the film of a run with what is felt of it, and say so."""
@@ -185,12 +193,21 @@ def simulate_file(
     from thermicon.circuit import nearest_reachable, simulate
 
     whole = read_set([file])
+    if whole.spatial:
+        _refuse({"--film": figure.film}, True, "shows one element, and this set is for several; draw a --figure")
+        _check_outputs(file, output, [figure])
+        runs = simulate_elements(whole, icon, asked, file, rate_Hz, tail_s or 0.0)
+        played = [trace for run in runs for trace in run.named]
+        tell(played, output, [None] * len(played))
+        for run in runs:
+            (figure.named(run.icon) if len(runs) > 1 else figure).write_rows(run)
+        return
     icons, rig = pick(whole, icon), asked.load(whole, file)
     pictures = [figure.named(each.name) if len(icons) > 1 else figure for each in icons]
     _check_outputs(file, output, pictures)
     traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
     near = [None if one.reachable else nearest_reachable(each, rig) for each, one in zip(icons, traces, strict=True)]
-    safe = tell(traces, rig, output, [None if found is None else found.sentence for found in near])
+    safe = tell(traces, output, [None if found is None else found.sentence for found in near])
     if output is None:
         lost = [str(one.icon) for one, kept in zip(traces, safe, strict=True) if not (one.reachable and kept)]
         cured = [str(one.icon) for one, found in zip(traces, near, strict=True) if found is not None]
@@ -210,7 +227,7 @@ def simulate_drive(
     _check_outputs(file, output, [figure])
     with noted():
         played = read_drive(file, hold=hold, columns=theirs)
-    tell([simulate_current(played, rig, rate_Hz=rate_Hz)], rig, output, [None])
+    tell([simulate_current(played, rig, rate_Hz=rate_Hz)], output, [None])
     if figure.figure or figure.film:
         figure.write_felt(simulate_current(played, rig), rig)
 
@@ -222,15 +239,15 @@ def _check_outputs(read: str | Path, output: Path | None, pictures: Sequence[Fil
         check_output(output, TRACE_SUFFIXES, "a trace")
 
 
-def tell(traces: Sequence[Trace], rig: Rig, output: Path | None, cures: Sequence[str | None]) -> list[bool]:
+def tell(traces: Sequence[Trace], output: Path | None, cures: Sequence[str | None]) -> list[bool]:
     """Warn, and write the traces or print a summary of each; returns which are safe."""
     from thermicon.circuit.safety.verdict import judge_safety
 
     verdicts = [judge_safety(trace) for trace in traces]
     for trace, verdict in zip(traces, verdicts, strict=True):
         past = [f"{'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in verdict.findings]
-        for warning in (*trace.warnings, *trace.beyond, *past):
-            if warning not in rig.warnings:  # already reported when the rig was loaded
+        for warning in (*trace.beyond, *past):
+            if warning not in trace.warnings:  # already reported when the rig was loaded
                 note(f"warning: {trace.icon or 'drive'}: {warning}")
     for trace, better in zip(traces, cures, strict=True):
         if output is not None:

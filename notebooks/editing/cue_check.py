@@ -8,6 +8,7 @@ from itertools import islice
 
 from thermicon.icons import CueErrors, Family, Icon, IconSet, parse
 from thermicon.icons.model.errors import CueError
+from thermicon.icons.model.iconset import SeveralElements
 
 MOST_NAMES = 200
 """Names that a list of icons shows; a family may have 100,000 members."""
@@ -59,7 +60,11 @@ def read_text(text: str) -> Reading:
     'missing unit: this number has no unit'
     """
     try:
-        return Reading(parse(text, "text"))
+        icons = parse(text, "text")
+        icons.check_one_element()
+        return Reading(icons)
+    except SeveralElements as refusal:
+        return Reading(None, (Trouble(1, 1, 2, "", str(refusal), ""),))
     except CueErrors as found:
         return Reading(None, tuple(map(trouble_of, found.errors)), found.more)
 

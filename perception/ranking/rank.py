@@ -9,7 +9,8 @@ from typing import Unpack
 
 from thermicon.base.checks.arguments import checked
 from thermicon.base.numbers.program import own_version
-from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.circuit.rig.layout import AnyLayout, Layout
+from thermicon.circuit.rig.rig import Rig
 from thermicon.icons import IconSet
 from thermicon.icons.files.shipped import Icons, set_of
 
@@ -32,7 +33,7 @@ from .scores import assemble, objection, worst_of
 @checked
 def rank(
     icons: Icons,
-    rig: AnyRig = None,
+    rig: AnyLayout = None,
     *,
     crowd: Crowd = EVERYBODY,
     trials: int = TRIALS,
@@ -52,7 +53,7 @@ def rank(
     icons
         The set, its name or file, or its icons.
     rig
-        The rig that plays it, or its name or file; None: the shipped rig of the icons' site, else thenar.
+        The rig, its name or file, or a layout of one; None: the shipped rig of the icons' site, else thenar.
     crowd
         Who feels and remembers the icons.
     trials
@@ -94,7 +95,7 @@ def rank(
     from thermicon.circuit.solver.simulate import duration_s, simulate_all
 
     icons, crowd = set_of(icons), crowd.but(**words)
-    rig, members, model = Rig.of(rig, icons.context.site), list(icons), crowd.model
+    rig, members, model = Layout.of(rig, icons.context.site).alone, list(icons), crowd.model
     draws = model.draw_count(parameters, DRAWS)
     if isinstance(workers, int) and workers < 1:
         raise ValueError(f"at least one worker is needed, not {workers}")

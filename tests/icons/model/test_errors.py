@@ -11,6 +11,7 @@ from thermicon.icons.model.errors import CueError, codes
 FRAMES = {
     "statement": "cue 1\nicon x {{\n{}\n}}",
     "family": "cue 1\nicon {} {{\n{}\n  hold for 1 s\n}}",
+    "spatial": "cue 1\nset {{ elements left, right }}\nicon x {{\n{}\n}}",
     "file": "{}",
 }
 
@@ -23,13 +24,16 @@ class Mistake:
     told: tuple[str, int, int]
     words: str
     suggestion: str | None = None
+    obeyed: str = ""
 
     @staticmethod
     def of(kind: str, code: str, marked: str, said: str | list[str]) -> "Mistake":
         parts = [*marked.split("\n", 1), "change by a at 1 K/s"][:2] if kind == "family" else [marked]
         before, mark, after = FRAMES[kind].format(*parts).partition("▸")
         place = (before.count("\n") + 1, len(before.rpartition("\n")[2]) + 1) if mark else (0, 0)
-        return Mistake(before + after, (code, *place), *([said] if isinstance(said, str) else said))
+        told = [said] if isinstance(said, str) else said
+        obeyed = "".join(FRAMES[kind].format(text) for text in told[2:])
+        return Mistake(before + after, (code, *place), *told[:2], obeyed=obeyed)
 
 
 ALL = [
@@ -53,6 +57,7 @@ def test_a_mistake_is_told_and_a_suggestion_cures_its_line(mistake: Mistake) -> 
     assert (error.code, error.line, error.column) == mistake.told
     assert mistake.words in error.render()
     assert mistake.suggestion in (None, error.suggestion or "")
+    assert not mistake.obeyed or parse(mistake.obeyed)
     if error.suggestion is None:
         return
     lines = mistake.source.split("\n")

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.notebooks.conftest import Cli
+from thermicon.notebooks.editing.cue_check import read_text
 
 HEAVY = {"numba", "numpy", "pandas", "matplotlib", "scipy", "IPython", "ipywidgets", "rich", "tqdm"}
 LOOSE = "# über alles\ncue 1\nicon dip{cool by 6K at 3 K/s; hold for 500 ms; return at 3 K/s # back\n}\n"
@@ -73,3 +74,43 @@ def test_the_mode_of_a_file_stays_and_a_link_is_followed(cli: Cli, tmp_path: Pat
     assert link.is_symlink()
     assert path.read_text(encoding="utf-8") == TIDY
     assert stat.S_IMODE(path.stat().st_mode) == 0o640
+
+
+TURNS = """cue 1
+set turns { elements left, right; baseline 32 °C }
+icon turn-left { together {
+  on left { warm by 3 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }
+  on right { cool by 3 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }
+} }
+icon leave { on left { cool by 4 °C at 2 °C/s; hold for 1 s; return at 2 °C/s } }
+"""
+
+
+def test_a_set_on_several_elements_is_checked_and_refused_by_what_plays_one(cli: Cli, tmp_path: Path) -> None:
+    path = written(tmp_path / "turns.cue", TURNS)
+    said = cli.good("check", path)
+    assert said.stdout == "turns.cue: 2 icons on left, right (3 different tracks), 5 s, 28–35 °C, steepest 2 °C/s\n"
+    assert "Next" not in said.stderr
+    converted = tmp_path / "again.cue"
+    cli.good("convert", path, "-o", converted)
+    assert cli.good("check", converted).stdout.partition(":")[2] == said.stdout.partition(":")[2]
+    for command in (
+        *(
+            ["rank"],
+            ["improve"],
+            ["sweep", "--vary", "contact.area_cm2=1,4"],
+            ["list", "--cite"],
+        ),
+        *(["pilot"], ["export", "--to", "csv", "-o", tmp_path / "drives"], ["play", "-o", tmp_path / "log"]),
+    ):
+        refused = cli(*command, path)
+        assert refused.exit_code == 1, command
+        last = refused.stderr.splitlines()[-1]
+        assert last.startswith("turns is for several elements (left, right)"), command
+        assert last.endswith('; for one element, leave out "elements" and "on"')
+    assert not (tmp_path / "drives").exists()
+
+
+def test_an_editor_shows_why_a_set_on_several_elements_cannot_be_opened() -> None:
+    (trouble,) = read_text(TURNS).troubles
+    assert trouble.headline.startswith("turns is for several elements")

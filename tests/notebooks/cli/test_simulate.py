@@ -107,3 +107,45 @@ def test_ngspice_plays_what_simulate_writes(
         assert np.abs(played - ours[column]).max() < 2e-3, column
     behind = np.interp(ours["time_s"][:-1] + 1.01e-6, theirs["/time"], theirs["/v(plus)"])
     assert np.abs(behind - ours["voltage_V"][:-1]).max() < 1e-3
+
+
+TURNS = """cue 1
+set turns { elements left, right; site thenar; baseline 32 °C }
+icon turn { together {
+  on left { warm by 3 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }
+  on right { cool by 3 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }
+} }
+icon leave { on left { cool by 4 °C at 2 °C/s; return at 2 °C/s } }
+"""
+
+
+def test_several_elements_are_simulated_on_a_layout_with_a_row_for_each(cli: Cli, tmp_path: Path) -> None:
+    (path := tmp_path / "turns.cue").write_text(TURNS, encoding="utf-8")
+    said = cli.good("simulate", path, "--rig", "wheel").stdout
+    headlines = [line.partition(":")[0] for line in said.splitlines() if not line.startswith(" ")]
+    assert headlines == ["turn on left", "turn on right", "leave on left", "leave on right"]
+    table, figure = tmp_path / "turn.csv", tmp_path / "turn.svg"
+    cli.good("simulate", path, "--rig", "wheel", "--icon", "turn", "-o", table, "--figure", figure)
+    assert {line.partition(",")[0] for line in table.read_text().splitlines()[1:]} == {"turn on left", "turn on right"}
+    drawn = figure.read_text(encoding="utf-8")
+    assert "left (°C)" in drawn
+    assert "right (°C)" in drawn
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ([], "name a layout, such as wheel"),
+        (["--rig", "ring-four"], "name a layout that has them"),
+        (["--rig", "wheel", "--film", "turn.svg"], "this set is for several; draw a --figure"),
+        (["--rig", "wheel", "--icon", "trun"], "did you mean turn?"),
+        (["--rig", "wheel", "--set", "contact.area_cm2=4"], "write set = { … } into an element of the layout file"),
+    ],
+)
+def test_what_cannot_be_simulated_on_elements_is_refused(
+    options: list[str], told: str, cli: Cli, tmp_path: Path
+) -> None:
+    (path := tmp_path / "turns.cue").write_text(TURNS, encoding="utf-8")
+    said = cli("simulate", path, *options)
+    assert said.exit_code
+    assert told in said.stderr

@@ -16,7 +16,7 @@ from tests.icons.model.test_roundtrip import families, icons, sets
 from tests.properties import for_any
 from thermicon.icons import CueErrors, Family, Icon, IconSet, format_text, parse
 from thermicon.icons.files.shipped import library_names
-from thermicon.icons.language.layout import tidy_number
+from thermicon.icons.language.format_text import tidy_number
 
 COMMENTS = ["# one", "#", '# a "text" { } ; (', "#two  ", "# °C −5 °", "##"]
 NUMBERS = ["{}", "+{}", "{}.", "0{}", "{}e0", "{}E+00", "{}.0"]

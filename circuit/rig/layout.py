@@ -1,0 +1,176 @@
+"""A layout: display elements at their places on the body."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from thermicon.base.checks.arguments import checked
+from thermicon.base.files.inputs import named_text, shipped_names
+from thermicon.base.words.clean_text import name_fault
+
+from .layoutfile import LayoutTable, Sink, Supply, read_layout_table
+from .rig import AnyRig, Rig, rig_names
+from .rigfile import RigError, parse_toml
+
+_ELEMENTS = re.compile(rb"(?m)^\s*(\[\[\s*element\s*\]\]|element\s*=)")
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """One display element.
+
+    Parameters
+    ----------
+    rig
+        What it is made of, and the skin under it.
+    name
+        By which icon sets address it; empty where it is the only one.
+    place_m
+        Where it is (x, y) in m; None where it is the only one.
+    sink
+        Name of the sink of the layout that it is on; None: that of its rig.
+    gap_m
+        Bare skin in m between it and the next element; None: not told.
+
+    Raises
+    ------
+    RigError
+        For a name that no element of a set can have.
+
+    Examples
+    --------
+    >>> Element(Rig.load("thenar"), "left")
+    Element(rig=Rig('thenar', ...), name='left', place_m=None, sink=None, gap_m=None)
+    """
+
+    rig: Rig
+    name: str = ""
+    place_m: tuple[float, float] | None = None
+    sink: str | None = None
+    gap_m: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.name and (wrong := name_fault(self.name)):
+            raise RigError(f"element: {wrong}")
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Several display elements; a layout of one element is its rig.
+
+    Parameters
+    ----------
+    elements
+        The elements in their order.
+    name, title
+        Name of the layout, and one line for people.
+    surfaces
+        Whether elements are on one piece of skin, or apart, as on two hands.
+    sinks, supply
+        Bodies that several elements give their heat to, and what all drivers together may take; none where not told.
+
+    Raises
+    ------
+    RigError
+        Without elements, and where one of several has no name, or the name of another.
+
+    Examples
+    --------
+    >>> rig = Rig.load("thenar")
+    >>> Layout((Element(rig),)).alone is rig
+    True
+    """
+
+    elements: tuple[Element, ...]
+    name: str = ""
+    title: str = ""
+    surfaces: Literal["apart", "one"] = "apart"
+    sinks: tuple[Sink, ...] = ()
+    supply: Supply | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "elements", tuple(self.elements))
+        names = [element.name for element in self.elements]
+        if not names:
+            raise RigError("a layout needs at least one element")
+        if len(names) > 1 and "" in names:
+            raise RigError("of several elements each needs a name; give all of them one")
+        if again := next((name for place, name in enumerate(names) if name in names[:place]), None):
+            raise RigError(f"two elements are called {again}; give each a name of its own")
+
+    @staticmethod
+    def of(rig: AnyLayout, site: str | None = None) -> Layout:
+        """A layout as it is or by its name or file, or one with a single element, whose rig is that of `Rig.of`.
+
+        >>> Layout.of("thenar").alone.name, [element.name for element in Layout.of("wheel").elements]
+        ('thenar', ['left', 'right'])
+        """
+        if isinstance(rig, str | Path) and _is_layout(rig):
+            return Layout.load(rig)
+        return rig if isinstance(rig, Layout) else Layout((Element(Rig.of(rig, site)),))
+
+    @staticmethod
+    @checked
+    def load(source: str | Path) -> Layout:
+        """Return a shipped layout by name, or a layout from a `.toml` file; its rigs may be files beside it.
+
+        Raises RigError with every fault of the file on a line of its own, or the nearest name where there is none.
+        """
+        text, where = named_text(source, layout_names(), "layout", RigError)
+        table = read_layout_table(parse_toml(text, where), where)
+        try:
+            elements = tuple(_element(table, place, Path(source).parent) for place in range(len(table.element)))
+        except RigError as problem:
+            raise RigError(f"{where}: {problem}") from None
+        return Layout(elements, table.name, table.title, table.surfaces, tuple(table.sink), table.supply)
+
+    def check_elements(self, names: Sequence[str]) -> None:
+        """Raise RigError, with a cure, unless the layout has every element of a set; others may idle."""
+        own = [element.name for element in self.elements]
+        if not set(names) <= set(own):
+            here = f"the layout {self.name or 'given'} has {', '.join(own)}" if any(own) else "a rig has one element"
+            cure = "name a layout that has them" if any(own) else "name a layout, such as wheel, or your own file"
+            raise RigError(f"the set is for the elements {', '.join(names)}, and {here}: {cure}")
+
+    @property
+    def alone(self) -> Rig:
+        """The rig of the only element; raises RigError, with a cure, where there are several."""
+        if len(self.elements) > 1:
+            names = ", ".join(element.name for element in self.elements)
+            raise RigError(f"a layout of several elements ({names}) cannot be taken here; give the rig of one element")
+        return self.elements[0].rig
+
+
+AnyLayout = Layout | AnyRig
+"""What is taken where a layout is needed: the layout, or what is taken where a rig is."""
+
+
+def layout_names() -> tuple[str, ...]:
+    """Return the names of the shipped layouts, which `Layout.load` accepts."""
+    return tuple(shipped_names("layouts"))
+
+
+def _is_layout(source: str | Path) -> bool:
+    """Whether a name or a file is that of a layout; no rig has elements."""
+    if Path(source).is_file():
+        with suppress(OSError), Path(source).open("rb") as opened:  # whose faults the reader of the file reports
+            return _ELEMENTS.search(opened.read(1_000_000)) is not None
+    return str(source) not in rig_names() and str(source) in layout_names()
+
+
+def _element(table: LayoutTable, place: int, folder: Path) -> Element:
+    """The element at a place of a table: all but its name and its place may be that of another."""
+    element = table.element[place]
+    first, *changed = reversed(table.chain(element))
+    beside = folder / str(first.rig)
+    rig = Rig.load(beside if beside.is_file() else str(first.rig))
+    for each in (first, *changed):
+        rig = rig.with_(**each.set) if each.set else rig
+    sink = next((each.sink for each in table.chain(element) if each.sink is not None), None)
+    gap = next((each.gap_mm for each in table.chain(element) if each.gap_mm is not None), None)
+    return Element(rig, element.name, table.point_m(element), sink, None if gap is None else gap * 1e-3)
