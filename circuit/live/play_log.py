@@ -6,6 +6,7 @@ import json
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import IO, Any
@@ -19,6 +20,7 @@ from ..delivery.delivered_drive import ModuleDrive
 from ..delivery.formats.form import events_in
 from ..delivery.pack import plain
 from ..play.logged_line import LineRow
+from ..play.watch import Stopped
 from ..solver.trace import Trace, write_trace
 from .ready import SENSORS
 
@@ -92,14 +94,22 @@ class PlayLog:
         """Write turns that the device reported at a time of this computer."""
         log = self._logs[-1]
         self._seen(log.delivery.icon.name, rows)
-        for row in rows:
-            log.rows.append((row, host_s, self._mark))
-            self._mark = ""
-            if self._file is not None:
-                self._file.write(_line(log, len(log.rows) - 1, log.rows[0][0].time_s))
-        if self._file is not None and rows and rows[-1].time_s >= self._flushed_s + FLUSHED_EVERY_S:
-            self._flushed_s = rows[-1].time_s
-            self._file.flush()
+        try:
+            for row in rows:
+                log.rows.append((row, host_s, self._mark))
+                self._mark = ""
+                if self._file is not None:
+                    self._file.write(_line(log, len(log.rows) - 1, log.rows[0][0].time_s))
+            if self._file is not None and rows and rows[-1].time_s >= self._flushed_s + FLUSHED_EVERY_S:
+                self._flushed_s = rows[-1].time_s
+                self._file.flush()
+        except OSError as problem:
+            with suppress(OSError):
+                self.close()
+            self._file = None  # what is measured is kept, and written at the end where there is room again
+            raise Stopped(
+                f"the log cannot be written ({problem.strerror}); make room, or give another folder"
+            ) from None
 
     def close(self) -> None:
         """Close the file that is written."""

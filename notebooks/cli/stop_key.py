@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import select
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+SIGNALS = {"SIGINT": "Ctrl-C", "SIGTERM": "the program was ended", "SIGHUP": "the terminal was closed"}
 KEYS = {" ": "Space", "\x1b": "Esc", "\x03": "Ctrl-C"}
 
 
@@ -18,7 +20,27 @@ def is_watched() -> bool:
 
 @contextmanager
 def stop_key() -> Iterator[Callable[[], str]]:
-    """A function that says which key stops, empty while none does; nothing is shown of what is typed meanwhile."""
+    """A function that says what stops, empty while nothing does: a key, Ctrl-C, or a signal that would end the program.
+
+    A second signal does not interrupt what switches off and ends the log.
+    """
+    came = list[str]()
+    names = [name for name in SIGNALS if hasattr(signal, name)]
+    before = [
+        (getattr(signal, name), signal.signal(getattr(signal, name), lambda *_, name=name: came.append(SIGNALS[name])))
+        for name in names
+    ]
+    try:
+        with _keys() as typed:
+            yield lambda: came[0] if came else typed()
+    finally:
+        for number, handler in before:
+            signal.signal(number, handler)
+
+
+@contextmanager
+def _keys() -> Iterator[Callable[[], str]]:
+    """A function that says which key stops; nothing is shown of what is typed meanwhile."""
     if not is_watched():
         yield str
     elif sys.platform == "win32":

@@ -1,4 +1,4 @@
-"""The figure of live play: what the display measures, over what was predicted of it."""
+"""The figure of live play."""
 
 from __future__ import annotations
 

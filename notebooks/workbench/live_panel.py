@@ -1,4 +1,4 @@
-"""Live play on a page: a device plays icons while the page shows what it measures, and stops it."""
+"""Live play on a page that can stop it."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 DEVICES = (("simulated controller", "simulated"), ("a board of your own", "board"))
 EVERY_S = 0.2
 """How often the figure is drawn anew."""
-BUSY_S = 2.0
-"""A notebook that is busy for so long does not hear its Stop button, so that the play stops by itself."""
+UNHEARD_S = 3.0
+"""A page that is closed or run anew, or a notebook that is busy for so long, cannot stop a device: the play ends."""
 FIELDS: Mapping[str, str] = {
     "port": "/dev/ttyACM0 or COM5, of a board",
     "folder": "a new folder for logs; none: no logs",
@@ -48,8 +48,12 @@ function render({ model }) {
     event.stopImmediatePropagation();
     model.send("stop");
   };
+  const beat = setInterval(() => model.get("plays") && model.send("here"), 500);
   document.addEventListener("keydown", pressed, true);
-  return () => document.removeEventListener("keydown", pressed, true);
+  return () => {
+    clearInterval(beat);
+    document.removeEventListener("keydown", pressed, true);
+  };
 }
 export default { render };
 """
@@ -95,7 +99,7 @@ class LivePanel:
         self.check = self._button("Check", "", partial(self.play, checks_only=True))
         self.halt = self._button("■ Stop", "danger", partial(self.stop, "the Stop button"), disabled=True)
         self.key = StopKey()
-        self.key.on_msg(lambda *_: self.stop("Space or Escape"))
+        self.key.on_msg(lambda _, message, __: self._hear() if message == "here" else self.stop("Space or Escape"))
         self.said = {name: widgets.HTML() for name in ("status", "figure", "report")}
         buttons = widgets.Box([self.start, self.check, self.halt, self.key]).add_class("thermicon-row")
         controls = [self.device, *self.fields.values(), self.amber, buttons, self.said["status"]]
@@ -132,15 +136,18 @@ class LivePanel:
         self.on, self.result, self._why = True, None, ""
         self._figures, self._rows, self._name = {}, [], ""
         self._allow()
+        self.said["figure"].value = self.said["report"].value = ""
         self._say("judging …")
         self.halt.focus()
         self._playing(True)
-        self._listen(loop)
+        self._hear()
+        self._follow(loop)
         self._worker.ask(partial(self._work, icons=played, names=names, rig=rig, how=how))
 
     def stop(self, why: str = "a person") -> None:
         """Switch the output off; it is off within a tick of the player."""
         self._why = self._why or why
+        self._say(f"stopping: {self._why} …", "th-bad")
 
     def tell(self) -> None:
         """Say to a page that was opened later whether a device plays."""
@@ -153,6 +160,7 @@ class LivePanel:
         from thermicon.circuit.delivery.delivered_drive import ModuleDrive
         from thermicon.circuit.live.play_live import play_export
         from thermicon.circuit.live.ready import CONTROLLER, judged
+        from thermicon.circuit.play.watch import Stopped
 
         from ..figures.live_figure import LiveFigure
         from ..report.play_report import check_report, play_report
@@ -170,6 +178,9 @@ class LivePanel:
                 for each in drives
                 if isinstance(each, ModuleDrive) and each.icon.name in names
             }
+            if self._why:
+                raise Stopped(f"{self._why}; nothing was put out")
+            self._hear()  # judging may have kept the processor; the output is off for longer than a page may be silent
             how = {**how, "timer": self.timer, "why_stop": self._why_stop, "tell": tell, "seen": self._seen}
             result = play_export(made, names, real_time=True, **how)
         finally:
@@ -178,8 +189,8 @@ class LivePanel:
         job.on_page(partial(self._finish, result, shown(*report)))
 
     def _why_stop(self) -> str:
-        if not self._why and time.monotonic() - self._heard_s > BUSY_S:
-            self.stop(f"the notebook was busy for {BUSY_S:g} s, and would not have heard Stop")
+        if not self._why and time.monotonic() - self._heard_s > UNHEARD_S:
+            self._why = f"for {UNHEARD_S:g} s nobody could have stopped it: the page is closed, or the notebook busy"
         return self._why
 
     def _seen(self, name: str, rows: Sequence[LineRow]) -> None:
@@ -187,11 +198,13 @@ class LivePanel:
             self._name, self._rows, self._begun = name, [], 0
         self._rows += rows
 
-    def _listen(self, loop: asyncio.AbstractEventLoop) -> None:
-        """On the page's own loop, as Stop is: what shows that it would be heard."""
+    def _hear(self) -> None:
+        """A sign of life of the page, which comes as a press of Stop would."""
         self._heard_s = time.monotonic()
+
+    def _follow(self, loop: asyncio.AbstractEventLoop) -> None:
         if self.on:
-            loop.call_later(EVERY_S, self._listen, loop)
+            loop.call_later(EVERY_S, self._follow, loop)
             safely(self._draw, lambda wrong: self.stop(f"the page failed: {wrong}"))
 
     def _draw(self) -> None:
@@ -234,8 +247,8 @@ class LivePanel:
 class LivePlay(LivePanel):
     """Live play of icons in a notebook: **Play**, a red **Stop**, and the display that is measured as it comes.
 
-    A device plays only while the notebook can stop it: a cell that computes for two seconds ends the play. In a script
-    use `thermicon.circuit.play_live`.
+    A device plays only while the page can stop it: a page that is closed, a cell that is run anew or one that computes
+    for three seconds ends the play. In a script use `thermicon.circuit.play_live`.
 
     Parameters
     ----------

@@ -15,6 +15,8 @@ from thermicon.circuit.live.controller import SimulatedController, settings_of
 from thermicon.circuit.live.live_player import LivePlayer, play_in_order
 from thermicon.circuit.live.play_live import SimulatedTime, live_numbers
 from thermicon.circuit.live.play_log import PlayLog
+from thermicon.circuit.play.logged_line import LineRow
+from thermicon.circuit.play.watch import Stopped
 
 CONTACT = "contact.resistance_m2K_per_W"
 Ready = Callable[[str, float], Export]
@@ -80,3 +82,19 @@ def test_files_of_a_play(tmp_path: Path) -> None:
     assert about["proofs"]["fell_K"] > about["status"]["polarity_check"]["display_change_at_least_K"]
     assert 0.0 < about["rms_K"] < 0.06
     assert again.time_s[0] == pytest.approx(-10.0, abs=0.2), "the second log begins where the first one ends"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
+def test_a_full_disk_stops_the_play_and_what_was_measured_is_kept(tmp_path: Path, ready: Ready) -> None:
+    log, row = PlayLog(tmp_path), LineRow(0.0, 32.0, 32.0, 32.0, 0.1, None)
+    log.open(next(iter(drives_of(ready("readme", 10.0)).values())))
+    log.close()
+    log._file = Path("/dev/full").open("w", buffering=1, encoding="utf-8")
+    with pytest.raises(
+        Stopped, match=r"the log cannot be written \(No space left on device\); make room, or give anot"
+    ):
+        log.take([row], 0.0)
+    log.take([row._replace(time_s=0.01)], 0.01)
+    (play,) = log.finish({})
+    assert play.columns["time_s"].tolist() == [0.0, 0.01]
+    assert len((tmp_path / play.files[0]).read_text().splitlines()) == 3

@@ -1,6 +1,7 @@
 """``thermicon play`` at the command line."""
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -104,3 +105,17 @@ def test_a_person_at_a_terminal_stops_in_real_time(key: bytes, two: Path, tmp_pa
     assert float(rows[-1].split(",")[7]) == 0.0
     os.close(mine)
     os.close(theirs)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
+@pytest.mark.parametrize(("number", "said"), [(signal.SIGINT, "Ctrl-C"), (signal.SIGTERM, "the program was ended")])
+def test_what_ends_the_program_switches_off_first_and_a_second_time_interrupts_nothing(
+    number: signal.Signals, said: str
+) -> None:
+    before = signal.getsignal(number)
+    with stop_key.stop_key() as stopped:
+        assert not stopped()
+        for _ in range(2):
+            os.kill(os.getpid(), number)
+        assert stopped() == said
+    assert signal.getsignal(number) is before

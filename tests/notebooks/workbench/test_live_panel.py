@@ -11,7 +11,7 @@ import pytest
 from tests.notebooks.workbench.openbench import opened
 from thermicon.base.files.inputs import InputError
 from thermicon.notebooks import LivePlay
-from thermicon.notebooks.workbench.live_panel import BUSY_S, LivePanel
+from thermicon.notebooks.workbench.live_panel import UNHEARD_S, LivePanel
 
 QUICK = 5.0
 
@@ -27,7 +27,9 @@ def said(live: LivePanel, name: str = "status") -> str:
     return re.sub(r"<[^>]*>", "", live.said[name].value)
 
 
-def until_off(live: LivePanel, button: str = "start", told: str = "never", act: Callable[[], None] = print) -> int:
+def until_off(
+    live: LivePanel, button: str = "start", told: str = "never", act: Callable[[], None] = print, is_open: bool = True
+) -> int:
     """Press a button, do something once the page has told so much, and return how many figures were seen."""
 
     async def played() -> int:
@@ -36,6 +38,8 @@ def until_off(live: LivePanel, button: str = "start", told: str = "never", act: 
         while live.on:
             seen.add(live.said["figure"].value)
             await asyncio.sleep(0.05)
+            if is_open:
+                live.key._handle_custom_msg("here", [])
             if not done and told in said(live):
                 done = True
                 act()
@@ -72,8 +76,20 @@ def test_keys_stop_it(live: LivePlay) -> None:
 
 
 def test_a_notebook_that_would_not_hear_stop_ends_the_play(live: LivePlay) -> None:
-    until_off(live, told="polarity test and rest", act=lambda: time.sleep(1.2 * BUSY_S))
-    assert "the notebook was busy for 2 s, and would not have heard Stop" in said(live)
+    until_off(live, told="polarity test and rest", act=lambda: time.sleep(1.2 * UNHEARD_S))
+    assert "stopped: for 3 s nobody could have stopped it" in said(live)
+
+
+def test_a_page_that_is_closed_or_a_cell_that_is_run_anew_ends_the_play(live: LivePlay) -> None:
+    until_off(live, is_open=False)
+    assert "stopped: for 3 s nobody could have stopped it: the page is closed" in said(live)
+
+
+def test_who_stops_while_icons_are_judged_is_heard_and_nothing_is_put_out(live: LivePlay, tmp_path: Path) -> None:
+    live.fields["folder"].value = str(tmp_path / "monday")
+    until_off(live, told="judging", act=live.halt.click)
+    assert said(live) == "refused: the Stop button; nothing was put out"
+    assert not (tmp_path / "monday").exists()
 
 
 def test_what_cannot_be_played_is_said_and_puts_nothing_out(live: LivePlay, path: Path) -> None:
