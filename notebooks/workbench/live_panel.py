@@ -247,8 +247,8 @@ class LivePanel:
 class LivePlay(LivePanel):
     """Live play of icons in a notebook: **Play**, a red **Stop**, and the display that is measured as it comes.
 
-    A device plays only while the page can stop it: a page that is closed, a cell that is run anew, or a kernel that hears
-    nothing of the page for three seconds ends the play. In a script use `thermicon.circuit.play_live`.
+    A device plays only while the page can stop it: a page that is closed, a cell that is run anew, or a kernel that
+    hears nothing of the page for three seconds ends the play. In a script use `thermicon.circuit.play_live`.
 
     Parameters
     ----------
