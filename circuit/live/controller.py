@@ -9,6 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from thermicon.base.numbers.arrays import Array
+
 from ..play.logged_line import LineRow
 from ..rig.rig import Rig
 from ..safety.demands import DEMANDS, Demands
@@ -57,6 +59,7 @@ class SimulatedController:
         self._bank = bank_of(rig)
         self._nodes_C = state_under_current(network_of(rig), 0.0)
         self._felt_C = self._display_C = float(self._nodes_C[COLD])
+        self._nodes_after(0.0)  # the first time takes seconds, to compile: now, while no clock runs
         self._noise = np.random.default_rng(seed)
         self._read_C = (self._felt_C, self._felt_C)
         self._goal_C: float | None = None
@@ -174,10 +177,14 @@ class SimulatedController:
         self._current_A = self._wanted_A((self._felt_C - before_C) / TURN_S, back_V)
         voltage_V = back_V + self._current_A * module.resistance_ohm
         self._rows.append(LineRow(self._turned_s, self._goal_C, *self._read_C, self._current_A, voltage_V))
-        lane, flow_A = np.zeros(1, dtype=np.int64), np.full((1, 1), self._current_A)
+        self._nodes_C = self._nodes_after(self._current_A)
+
+    def _nodes_after(self, current_A: float) -> Array:
+        """The °C of all nodes after a turn under a current."""
+        lane, flow_A = np.zeros(1, dtype=np.int64), np.full((1, 1), current_A)
         turn = Intervals(np.array([0.0, TURN_S]), np.array([-1, 0]), flow_A, flow_A)
         state = State(self._nodes_C[np.newaxis])
-        self._nodes_C = run_on(self._bank, lane, lane, turn, state, ("display_C",))[1].nodes_C[0]
+        return np.asarray(run_on(self._bank, lane, lane, turn, state, ("display_C",))[1].nodes_C[0])
 
     def _check(self, second_C: float) -> None:
         """The device's own stops, by its own sensor and clock."""

@@ -182,6 +182,4 @@ def _simulated(settings: Mapping[str, Any], timer: Any) -> Display:
     demands = import_module("pydantic").TypeAdapter(Demands).validate_python(settings)
     controller, player = SimulatedController(Rig.load(HERE / "rig.toml"), demands, timer.monotonic), load_player()
     player.time = timer
-    timer.sleep(LOOK_EVERY_S)
-    controller.rows()  # the first turns take seconds, to compile
     return LiveDisplay(player, controller, str(controller.status()["identity"]), READS_S if timer is time else 1.0)
