@@ -171,7 +171,7 @@ def test_a_block_is_played_by_the_compiled_board(
     simulated: Any = importlib.import_module("study_simulated")
     script = modules["run_study"]
     files = script.StudyFiles(tmp_path / "data", {**script.read_study(), "landing_s": 1.0})
-    with board(found, tmp_path / "board", tool("cc"), 4.0) as bench:
+    with board(found, tmp_path / "board", tool("cc"), 1.0) as bench:
         timer = SimpleNamespace(monotonic=bench.clock, sleep=bench.sleep)
         named = {"device": "board", "port": bench.port, "stated": [STATED]}
         chosen = SimpleNamespace(**named, bench=None, channel=None, simulate=False)
