@@ -21,7 +21,7 @@ from thermicon.icons import Icon
 from thermicon.icons.files.shipped import Icons, by_name
 
 from ..report.blocks import fragment, shown
-from .live_view import BackgroundJob, BackgroundWorker, safely
+from .live_view import BackgroundJob, BackgroundWorker, button, safely
 
 if TYPE_CHECKING:
     from thermicon.circuit.live.play_live import LiveResult
@@ -70,8 +70,9 @@ class StopKey(anywidget.AnyWidget):
 class LivePanel:
     """Controls, state and figure of live play; ``box`` is what is shown.
 
-    ``wanted`` returns the icons of the set, the names to play in order, and the rig; ``playing`` is told when a play
-    begins, and when the output is off again. Icons are played in a thread, and only while the page can stop them.
+    ``wanted`` returns the icons of the set, the names in the order of play, and the rig. ``playing`` is called with
+    True when a play begins, and with False when the output is off again. Icons are played in a thread, and only while
+    the page can stop them.
     """
 
     timer = time.monotonic, time.sleep
@@ -95,9 +96,9 @@ class LivePanel:
         for control in (self.device, *self.fields.values()):
             control.layout.width = "100%"
             control.style.description_width = "52px"
-        self.start = self._button("▶ Play on the device", "", partial(self.play, checks_only=False))
-        self.check = self._button("Check", "", partial(self.play, checks_only=True))
-        self.halt = self._button("■ Stop", "danger", partial(self.stop, "the Stop button"), disabled=True)
+        self.start = button("▶ Play on the device", "", lambda: safely(self.play, self._failed))
+        self.check = button("Check", "", lambda: safely(partial(self.play, checks_only=True), self._failed))
+        self.halt = button("■ Stop", "", partial(self.stop, "the Stop button"), button_style="danger", disabled=True)
         self.key = StopKey()
         self.key.on_msg(lambda _, message, __: self._hear() if message == "here" else self.stop("Space or Escape"))
         self.said = {name: widgets.HTML() for name in ("status", "figure", "report")}
@@ -237,11 +238,6 @@ class LivePanel:
 
     def _say(self, text: str, kind: str = "th-status") -> None:
         self.said["status"].value = fragment("marked", text, f"{kind} th-wrap")
-
-    def _button(self, name: str, style: str, act: Callable[[], None], **more: Any) -> widgets.Button:
-        made = widgets.Button(description=name, button_style=style, layout={"width": "auto"}, **more)
-        made.on_click(lambda _: safely(act, self._failed))
-        return made
 
 
 class LivePlay(LivePanel):
