@@ -103,6 +103,11 @@ def library_names() -> tuple[str, ...]:
     return tuple(sorted(entry.name.removesuffix(".cue") for entry in FOLDER.iterdir() if entry.name.endswith(".cue")))
 
 
+def names_on_one_element() -> tuple[str, ...]:
+    """The names of the shipped sets that need no layout of several elements."""
+    return tuple(name for name in library_names() if not load_library(name).spatial)
+
+
 @checked
 def load_library(name: str) -> IconSet:
     """Return a shipped set.

@@ -45,7 +45,7 @@ class Player {
     const empty = frame.panels.length === 0;
     this.play.disabled = empty && !this.device;
     for (const each of [this.whole, this.quiz]) each.disabled = empty || this.device;
-    if (this.run.playing && frame.icon !== this.run.name) this.stop();
+    if (this.timeline.playing && frame.icon !== this.run.name) this.stop();
     this.reel.age();
   }
 

@@ -17,7 +17,7 @@ class Sides {
 
   change() {
     if (!this.any) return false;
-    this.ask({ type: "swap" });
+    this.ask({ type: "swap", once: nextSeq() }); // asked again after silence, it must not change sides twice
     return true;
   }
 

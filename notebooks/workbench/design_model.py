@@ -43,6 +43,7 @@ class DesignModel:
         self._moving = False
         self.scene: Scene = scene(self.text, rig, icon, self.observer)
         self.pinned: Version | None = None
+        self._swapped: object = None
         self.document.history = self.document.history.chosen(self.scene.icon)
         self._tell: list[Callable[[], None]] = []
 
@@ -172,7 +173,7 @@ class DesignModel:
                 self.pinned = None
                 return None
             case "swap":
-                return self._swap()
+                return self._swap(message.get("once"))
             case "apply":
                 return self._mend(message.get("line"))
         raise ValueError(f"the page sent an unknown message: {kind}")
@@ -212,8 +213,13 @@ class DesignModel:
         self._draw(history.now.icon)
         return self.text
 
-    def _swap(self) -> str | None:
-        """Change sides: what is pinned becomes the design, in its own document, and the design what is pinned."""
+    def _swap(self, once: object) -> str:
+        """Change sides: what is pinned becomes the design, in its own document, and the design what is pinned.
+
+        A page that got no answer asks again with the number ``once`` that it gave before.
+        """
+        if once is not None and once == self._swapped:
+            return self.text
         if (other := self.pinned) is None or self.scene.stale:
             raise ValueError("nothing is pinned" if other is None else "a text with errors cannot be pinned")
         self.pinned, self.document = self.version, other.document
@@ -221,6 +227,7 @@ class DesignModel:
         self.rig, self._told = turned(self.nominal, self.values)
         self.document.history = self.document.history.changed(other.scene.text)
         self._draw(other.scene.icon)
+        self._swapped = once
         return self.text
 
     def _mend(self, line: object) -> str:

@@ -13,7 +13,7 @@ from thermicon.base.files.atomic import OutputError
 from thermicon.circuit import Rig
 from thermicon.circuit.rig.rig import rig_names
 from thermicon.icons import Icon, IconSet, load_library, read_cue
-from thermicon.icons.files.shipped import library_names
+from thermicon.icons.files.shipped import library_names, names_on_one_element
 
 from ..files.document import Document
 from ..files.recovery import UnsavedText
@@ -245,7 +245,8 @@ class DocumentBar:
     def _open(self, name: str | None) -> None:
         self.shown = name
         if name == "open":
-            self.files.options = [*self._files("*.cue")[:MOST_FILES], *(f"{SHIPPED}{name}" for name in library_names())]
+            shipped = (f"{SHIPPED}{name}" for name in names_on_one_element())
+            self.files.options = [*self._files("*.cue")[:MOST_FILES], *shipped]
         elif name == "save" and not self.name.value:
             self.name.value = f"{self.document.name.removesuffix('.cue')}.cue"
         self.panel.children = () if name is None else (self._panels[name],)

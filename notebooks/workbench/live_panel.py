@@ -106,7 +106,7 @@ class LivePanel:
         controls = [self.device, *self.fields.values(), self.amber, buttons, self.said["status"]]
         left = widgets.VBox(controls, layout={"flex": "1 1 260px"})
         right = widgets.VBox([self.said["figure"], self.said["report"]], layout={"flex": "2 1 500px", "min_width": "0"})
-        self.box = widgets.VBox([widgets.Box([left, right]).add_class("thermicon-row")]).add_class("thermicon-export")
+        self.box = widgets.VBox([widgets.Box([left, right]).add_class("thermicon-row")]).add_class("thermicon-live")
         self._say("written from documents: no device was ever driven; a computer that hangs cannot stop anything")
 
     def play(self, *, checks_only: bool = False) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from thermicon.icons import Family, Icon, load_library
-from thermicon.icons.files.shipped import library_names
+from thermicon.icons.files.shipped import names_on_one_element
 
 from ..editing.cue_check import read_text
 from ..timeline.frames import DRAGGED_POINTS, CanvasFrame, frame_of
@@ -40,7 +40,7 @@ def reel_of(design: DesignModel) -> tuple[list[CanvasFrame], str]:
 def shipped_texts() -> dict[str, dict[str, str]]:
     """Texts of the icons of shipped sets, by set and name; a large family is one text."""
     found = {}
-    for name in library_names():
+    for name in names_on_one_element():
         entries: list[Icon | Family] = []
         for entry in load_library(name).entries:
             entries += entry if isinstance(entry, Family) and len(entry) <= MOST_MEMBERS else [entry]

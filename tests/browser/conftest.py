@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from tests.browser.jupyter import Server, end_kernels, errors_in, open_notebook, run_all, running
 from thermicon.notebooks.cli.lab import PROMPT
@@ -28,6 +28,8 @@ LAB = (
     PROMPT,
 )
 
+
+expect.set_options(timeout=30_000)  # a machine with busy cores answers late, which is not what these tests ask
 
 SMOKE = "test_a_view_greets_and_draws_the_first_frame"
 """The test of this folder that belongs to the ordinary suite; all others are slow, or benchmarks, which run alone."""

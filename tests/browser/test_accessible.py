@@ -48,7 +48,7 @@ def test_no_view_of_the_workbench_has_a_serious_finding(bench: Page, scheme: str
     wrong["set"] = findings(page)
     open_tab(page, "Export")
     page.get_by_label("icons", exact=True).select_option("the selected icon")  # six take longer to judge
-    expect(page.locator(".thermicon-export")).to_contain_text("ready to be written", timeout=30_000)
+    expect(page.locator(".thermicon-export")).to_contain_text("ready to be written")
     wrong["export"] = findings(page)
     open_tab(page, "Design")
     page.get_by_role("button", name="Sliders").click()

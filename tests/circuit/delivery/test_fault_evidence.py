@@ -30,7 +30,7 @@ from thermicon.circuit.delivery.prepare import Prepared, prepare_set
 from thermicon.circuit.rig.rig import rig_names
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.icons import CueErrors, Icon, load_library, parse
-from thermicon.icons.files.shipped import library_names
+from thermicon.icons.files.shipped import names_on_one_element
 
 EXPORTS, LUMPS = int(os.environ.get("THERMICON_FAULTS", "20")), 1600
 """Exports of each kind; nodes of a rig in all its worlds at most."""
@@ -185,7 +185,7 @@ def test_demands_hold_in_any_play(kind: str) -> None:
 def test_demands_hold_for_shipped_icons() -> None:
     rng = np.random.default_rng(35)
     places = []
-    for library in library_names():
+    for library in names_on_one_element():
         icons = list(load_library(library))
         few = [icons[k] for k in sorted(rng.permutation(len(icons))[:OF_A_SET])]
         places += [(library, icon.name, rig) for icon in few for rig in rig_names()]

@@ -12,10 +12,10 @@ from thermicon.circuit import Drive, Element, InputError, Layout, Rig, export, g
 from thermicon.circuit.rig.layout import layout_names
 from thermicon.circuit.rig.rig import rig_names
 from thermicon.icons import Icon, load_library
-from thermicon.icons.files.shipped import library_names
+from thermicon.icons.files.shipped import names_on_one_element
 from thermicon.perception import rank
 
-SETS = [(name, rig) for name in library_names() for rig in rig_names()]
+SETS = [(name, rig) for name in names_on_one_element() for rig in rig_names()]
 THENAR = Rig.load("thenar")
 TWO = Layout((Element(THENAR, "left"), Element(THENAR, "right")))
 STEP = load_library("six-icons")["cooling-step"]

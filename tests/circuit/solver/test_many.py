@@ -14,7 +14,7 @@ from thermicon.circuit.solver.inverse import design_many
 from thermicon.circuit.solver.simulate import duration_s
 from thermicon.circuit.solver.superposed import MOST_CORNERS, PROBES, corners_of, is_linear, superposed
 from thermicon.icons import Icon, load_library, parse
-from thermicon.icons.files.shipped import library_names
+from thermicon.icons.files.shipped import names_on_one_element
 
 THENAR = Rig.load("thenar")
 OTHERS = [
@@ -147,7 +147,7 @@ def both_ways(icons: Sequence[Icon], rig: Rig, monkeypatch: pytest.MonkeyPatch) 
         return float(np.abs(quick - run()).max()), results
 
 
-@pytest.mark.parametrize("name", library_names())
+@pytest.mark.parametrize("name", names_on_one_element())
 def test_every_shipped_set_is_within_half_a_millikelvin(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     icons = [icon for icon in load_library(name) if icon.context.control == "display"][:8]
     icons = icons or list(load_library("six-icons"))[:2]

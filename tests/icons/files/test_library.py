@@ -10,8 +10,8 @@ from thermicon.icons.files.shipped import library_names
 
 SIX = load_library("six-icons")
 NAMES = (
-    *("calibration-drive", "cooling-step-skin", "pulse-sequences", "search-space"),
-    *("six-icons", "wave-confusions", "wave-shapes", "wilson-ramps"),
+    *("bars", "calibration-drive", "calls", "cooling-step-skin", "pulse-sequences", "search-space"),
+    *("six-icons", "turns", "wave-confusions", "wave-shapes", "wilson-ramps"),
 )
 
 
@@ -21,7 +21,7 @@ def test_the_shipped_sets() -> None:
         icons = load_library(name)
         assert icons.name == name and icons.title
         assert icons.context.baseline_C == 32.0
-        assert all(entry.metadata.means and entry.metadata.by for entry in icons.entries)
+        assert all(entry.metadata.means and entry.metadata.by for entry in (*icons.entries, *icons.spatial))
         assert bool(cited(icons)) == (icons.metadata.by != "thermicon"), "known sources"
     assert "reconstruction" not in SIX["cooling-step"].metadata.tags
     assert sum("reconstruction" in icon.metadata.tags for icon in SIX) == 5, "what is not published is marked"

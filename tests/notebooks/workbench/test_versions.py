@@ -56,6 +56,20 @@ def test_sides_change_with_text_icon_rig_and_knobs_and_change_back(design: Desig
     assert "pinned" not in design.receive({"type": "unpin"}).meta
 
 
+def test_a_page_that_asks_again_after_silence_changes_sides_once(design: DesignModel) -> None:
+    design.receive({"type": "pin"})
+    design.receive({"type": "text", "text": TWO.replace("by 4", "by 3")})
+    for once, shown in (
+        (1, TWO),
+        (1, TWO),
+        (2, TWO.replace("by 4", "by 3")),
+        (2, TWO.replace("by 4", "by 3")),
+        (3, TWO),
+    ):
+        assert design.receive({"type": "swap", "once": once}).meta["text"] == shown
+        assert design.text == shown
+
+
 def test_a_version_of_another_file_comes_back_with_its_file_and_no_file_gets_the_text_of_another(
     tmp_path: Path, design: DesignModel
 ) -> None:
