@@ -219,7 +219,8 @@ def play_export(
                 "stopped": stopped,
             }
             plays = log.finish(about)
-        return LiveResult(() if checks_only else plays, stopped, met, player.proofs, line.status(), folder)
+        why = stopped or log.unfinished
+        return LiveResult(() if checks_only else plays, why, met, player.proofs, line.status(), folder)
 
 
 def live_numbers(demands: Demands, device_protects: bool) -> Numbers:

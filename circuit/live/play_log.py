@@ -13,7 +13,7 @@ from typing import IO, Any
 
 import numpy as np
 
-from thermicon.base.files.atomic import complete_or_absent
+from thermicon.base.files.atomic import OutputError, complete_or_absent
 from thermicon.base.numbers.arrays import Array
 
 from ..delivery.delivered_drive import ModuleDrive
@@ -70,6 +70,7 @@ class PlayLog:
         self._logs: list[_OpenLog] = []
         self._times = Counter[str]()
         self._mark, self._flushed_s = "", 0.0
+        self.unfinished = ""
 
     def open(self, delivery: ModuleDrive) -> None:
         """Begin the log of an icon's play."""
@@ -117,40 +118,59 @@ class PlayLog:
             self._file.close()
 
     def finish(self, about: Mapping[str, Any]) -> tuple[MeasuredPlay, ...]:
-        """Put events and times into each log, and write the prediction and what was set beside it."""
+        """Put events and times into each log, and write the prediction and what was set beside it.
+
+        Where that cannot be written, `unfinished` says why, the log stays as it was, and its play has no files.
+        """
         self.close()
         return tuple(self._finished(log, about) for log in self._logs if log.rows)
 
     def _finished(self, log: _OpenLog, about: Mapping[str, Any]) -> MeasuredPlay:
-        trace, times = log.delivery.trace, np.array([row.time_s for row, _, _ in log.rows])
-        first = int(np.searchsorted(times, log.began_s + 1e-9))  # the turn that began before could not know it
-        has_begun = first < len(times)
-        zero_s = float(times[first if has_begun else 0])
-        for event in events_in(log.delivery) if has_begun else ():
-            at = int(np.searchsorted(times, zero_s + event.time_s - 1e-6))
-            if at < len(times):
-                row, host_s, text = log.rows[at]
-                log.rows[at] = row, host_s, f"{text}; {event.name}" if text else event.name
-        table = np.array([[math.nan if cell is None else cell for cell in row] for row, _, _ in log.rows])
-        columns = dict(zip(("time_s", *MEASURED), table.T, strict=True))
-        columns["time_s"] = time_s = columns["time_s"] - zero_s
-        played = (time_s >= 0.0) & (time_s <= trace.time_s[-1]) & has_begun
-        due_C = np.interp(time_s[played], trace.time_s, dict(trace.probes)[SENSORS[0]])
-        off_K = columns[MEASURED[1]][played] - due_C
-        rms_K = float(np.sqrt(np.mean(off_K**2))) if has_begun else math.nan
-        ended = bool(has_begun and time_s[-1] >= log.delivery.file_s - 1e-6)
-        measured = MeasuredPlay(log.delivery.icon.name, columns, trace, rms_K, ended)
+        measured, zero_s = _measured(log)
         if self._folder is None:
             return measured
-        names = tuple(f"{log.stem}.{end}" for end in ("log.csv", "predicted.csv", "log.json"))
-        with complete_or_absent(self._folder / names[0]) as draft:
-            lines = [_line(log, number, zero_s) for number in range(len(log.rows))]
-            draft.write_text("".join([",".join(COLUMNS) + "\n", *lines]), encoding="utf-8", newline="\n")
-        write_trace(replace(trace, icon=log.stem), self._folder / names[1])
-        content = plain({**about, "icon": measured.name, "rms_K": rms_K, "ended": ended})
-        with complete_or_absent(self._folder / names[2]) as draft:
-            draft.write_text(json.dumps(content, indent=2, ensure_ascii=False, default=asdict) + "\n", encoding="utf-8")
-        return replace(measured, files=names)
+        try:
+            return replace(measured, files=_written(self._folder, log, zero_s, measured, about))
+        except (OSError, OutputError) as problem:
+            self.unfinished = f"{log.stem}.log.csv has no prediction beside it, which could not be written ({problem})"
+            return measured
+
+
+def _measured(log: _OpenLog) -> tuple[MeasuredPlay, float]:
+    """What was measured, and the time of the log's first row of the drive."""
+    trace, times = log.delivery.trace, np.array([row.time_s for row, _, _ in log.rows])
+    first = int(np.searchsorted(times, log.began_s + 1e-9))  # the turn that began before could not know it
+    has_begun = first < len(times)
+    zero_s = float(times[first if has_begun else 0])
+    for event in events_in(log.delivery) if has_begun else ():
+        at = int(np.searchsorted(times, zero_s + event.time_s - 1e-6))
+        if at < len(times):
+            row, host_s, text = log.rows[at]
+            log.rows[at] = row, host_s, f"{text}; {event.name}" if text else event.name
+    table = np.array([[math.nan if cell is None else cell for cell in row] for row, _, _ in log.rows])
+    columns = dict(zip(("time_s", *MEASURED), table.T, strict=True))
+    columns["time_s"] = time_s = columns["time_s"] - zero_s
+    played = (time_s >= 0.0) & (time_s <= trace.time_s[-1]) & has_begun
+    due_C = np.interp(time_s[played], trace.time_s, dict(trace.probes)[SENSORS[0]])
+    off_K = columns[MEASURED[1]][played] - due_C
+    rms_K = float(np.sqrt(np.mean(off_K**2))) if has_begun else math.nan
+    ended = bool(has_begun and time_s[-1] >= log.delivery.file_s - 1e-6)
+    return MeasuredPlay(log.delivery.icon.name, columns, trace, rms_K, ended), zero_s
+
+
+def _written(
+    folder: Path, log: _OpenLog, zero_s: float, measured: MeasuredPlay, about: Mapping[str, Any]
+) -> tuple[str, ...]:
+    """Write the log as it is after the play, the prediction and what was set, and return their names."""
+    names = tuple(f"{log.stem}.{end}" for end in ("log.csv", "predicted.csv", "log.json"))
+    with complete_or_absent(folder / names[0]) as draft:
+        lines = [_line(log, number, zero_s) for number in range(len(log.rows))]
+        draft.write_text("".join([",".join(COLUMNS) + "\n", *lines]), encoding="utf-8", newline="\n")
+    write_trace(replace(measured.predicted, icon=log.stem), folder / names[1])
+    content = plain({**about, "icon": measured.name, "rms_K": measured.rms_K, "ended": measured.ended})
+    with complete_or_absent(folder / names[2]) as draft:
+        draft.write_text(json.dumps(content, indent=2, ensure_ascii=False, default=asdict) + "\n", encoding="utf-8")
+    return names
 
 
 def _line(log: _OpenLog, number: int, zero_s: float) -> str:

@@ -154,10 +154,10 @@ def icon_line(one: Prepared) -> str:
     )
 
 
-def refused(ready: Export) -> bool:
+def refused(ready: Export, *, may_force: bool = True) -> bool:
     """Report why icons are refused or forced; True if nothing may be written."""
     found, force = ready.refused, ready.force
-    final = any(not refusal.forcible for _, refusal in found)
+    final = not may_force or any(not refusal.forcible for _, refusal in found)
     for name, refusal in found:
         stops = final or not force
         told = advised(refusal.text, refusal.changes, OPTIONS)

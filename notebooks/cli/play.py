@@ -58,16 +58,18 @@ def play_command(
         raise usage("plays nothing; leave out -o and --order", "--check")
     if (device == "board") != (port is not None):
         raise usage("belongs to --device board, which needs it", "--port")
+    from thermicon.circuit.live.demanded import statements_of
     from thermicon.circuit.live.play_live import check_empty, play_export
     from thermicon.circuit.play.watch import Refused
     from thermicon.circuit.safety.playmap import UnjudgedError
 
     if folder is not None:
         check_empty(folder)
+    statements_of(stated or [])  # so that a typing error is told before all is judged
     slow = is_watched()
     try:
         made, names = exported(file, rig, icon, order, pause, whole=port is not None)
-        if refused(made):
+        if refused(made, may_force=False):
             note(CAUTION)
             raise Refused("nothing was put out")
         with stop_key() as pressed:

@@ -98,3 +98,15 @@ def test_a_full_disk_stops_the_play_and_what_was_measured_is_kept(tmp_path: Path
     (play,) = log.finish({})
     assert play.columns["time_s"].tolist() == [0.0, 0.01]
     assert len((tmp_path / play.files[0]).read_text().splitlines()) == 3
+
+
+def test_a_log_that_cannot_be_finished_keeps_what_was_played_and_says_why(tmp_path: Path, ready: Ready) -> None:
+    log, row = PlayLog(tmp_path), LineRow(0.0, 32.0, 32.0, 32.0, 0.1, None)
+    log.open(next(iter(drives_of(ready("readme", 10.0)).values())))
+    log.take([row], 0.0)
+    (tmp_path / "arrived.predicted.csv").mkdir()
+    (play,) = log.finish({})
+    assert play.files == ()
+    assert play.columns["time_s"].tolist() == [0.0]
+    assert len((tmp_path / "arrived.log.csv").read_text().splitlines()) == 2
+    assert "arrived.log.csv has no prediction beside it" in log.unfinished

@@ -64,6 +64,7 @@ def test_a_changed_drive_is_not_played(cli: Cli, two: Path, tmp_path: Path) -> N
         ([], 2, "'-o' / '--output'"),
         (["--check", "-o", "out"], 2, "plays nothing"),
         (["--icon", "warm-step", "--order", "order.txt", "-o", "out"], 2, "leave out --icon"),
+        (["--set", "driver.current_limit_A=0.1", "-o", "out"], 3, "NOT reached"),
         (["--set", "safety.display_lowest_C=31", "--set", "safety.reason=test", "-o", "out"], 3, "refused"),
     ],
 )
@@ -74,6 +75,7 @@ def test_what_is_not_played(
     answer = cli("play", two, *words)
     assert answer.exit_code == code, answer.stderr
     assert said in answer.stderr
+    assert "--force" not in answer.stderr, "which this command has not"
     assert not (tmp_path / "out").exists()
 
 
