@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Sequence
 from contextlib import suppress
@@ -73,6 +74,8 @@ class Layout:
         Whether elements are on one piece of skin, or apart, as on two hands.
     sinks, supply
         Bodies that several elements give their heat to, and what all drivers together may take; none where not told.
+    lapse
+        Share of trials (0–1) in which what people do besides, such as driving, makes them give any name.
 
     Raises
     ------
@@ -92,6 +95,7 @@ class Layout:
     surfaces: Literal["apart", "one"] = "apart"
     sinks: tuple[Sink, ...] = ()
     supply: Supply | None = None
+    lapse: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "elements", tuple(self.elements))
@@ -127,7 +131,7 @@ class Layout:
             elements = tuple(_element(table, place, Path(source).parent) for place in range(len(table.element)))
         except RigError as problem:
             raise RigError(f"{where}: {problem}") from None
-        return Layout(elements, table.name, table.title, table.surfaces, tuple(table.sink), table.supply)
+        return Layout(elements, table.name, table.title, table.surfaces, tuple(table.sink), table.supply, table.lapse)
 
     def check_elements(self, names: Sequence[str]) -> None:
         """Raise RigError, with a cure, unless the layout has every element of a set; others may idle."""
@@ -136,6 +140,21 @@ class Layout:
             here = f"the layout {self.name or 'given'} has {', '.join(own)}" if any(own) else "a rig has one element"
             cure = "name a layout that has them" if any(own) else "name a layout, such as wheel, or your own file"
             raise RigError(f"the set is for the elements {', '.join(names)}, and {here}: {cure}")
+
+    @property
+    def document(self) -> str:
+        """All that counts of the layout as JSON: layouts are equal if their documents are; of one, that of its rig."""
+        if len(self.elements) == 1:
+            return self.alone.document
+        held = {
+            "name": self.name,
+            "surfaces": self.surfaces,
+            "lapse": self.lapse,
+            "elements": [[each.name, each.place_m, each.sink, each.gap_m, each.rig.document] for each in self.elements],
+            "sinks": [sink.model_dump() for sink in self.sinks],
+            "supply": self.supply and self.supply.model_dump(),
+        }
+        return json.dumps(held, ensure_ascii=False)
 
     @property
     def alone(self) -> Rig:

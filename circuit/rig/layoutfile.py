@@ -58,6 +58,7 @@ class LayoutTable(KeyTable):
     title: kinds.Text = ""
     surfaces: Literal["apart", "one"]
     around_mm: Annotated[float, Field(ge=10, le=2000)] | None = None
+    lapse: Annotated[float, Field(ge=0, lt=1)] = 0.0
     element: list[ElementTable]
     sink: list[Sink] = Field(default_factory=list)
     supply: Supply | None = None
