@@ -137,9 +137,13 @@ class Layout:
         """Raise RigError, with a cure, unless the layout has every element of a set; others may idle."""
         own = [element.name for element in self.elements]
         if not set(names) <= set(own):
-            here = f"the layout {self.name or 'given'} has {', '.join(own)}" if any(own) else "a rig has one element"
-            cure = "name a layout that has them" if any(own) else "name a layout, such as wheel, or your own file"
-            raise RigError(f"the set is for the elements {', '.join(names)}, and {here}: {cure}")
+            what = f"the rig {self.elements[0].rig.name} is one element"
+            if any(own):
+                what = f"the layout {self.name or 'given'} has {', '.join(own)}"
+            shipped = (Layout.load(name) for name in layout_names())
+            fits = [each.name for each in shipped if {*names} <= {element.name for element in each.elements}]
+            cure = f"give a layout that has them, such as {fits[0]}" if fits else "give the file of a layout with them"
+            raise RigError(f"the icons play on {', '.join(names)}, and {what}: {cure}")
 
     @property
     def document(self) -> str:
@@ -157,11 +161,22 @@ class Layout:
         return json.dumps(held, ensure_ascii=False)
 
     @property
+    def toml(self) -> str:
+        """The rig of the only element as the text of a rig file, or those of all, each once, under their names."""
+        if len(self.elements) == 1:
+            return self.alone.toml
+        names: dict[Rig, list[str]] = {}
+        for element in self.elements:
+            names.setdefault(element.rig, []).append(element.name)
+        return "\n".join(f"# {', '.join(named)}\n{rig.toml}" for rig, named in names.items())
+
+    @property
     def alone(self) -> Rig:
         """The rig of the only element; raises RigError, with a cure, where there are several."""
         if len(self.elements) > 1:
             names = ", ".join(element.name for element in self.elements)
-            raise RigError(f"a layout of several elements ({names}) cannot be taken here; give the rig of one element")
+            here = f"{self.name or 'this'} is a layout of several elements ({names}), and one plays here"
+            raise RigError(f"{here}; give the rig of one, such as {self.elements[0].rig.name}")
         return self.elements[0].rig
 
 

@@ -1,4 +1,4 @@
-"""Which tracks icons play on the elements of a layout: distinct ones once, and the place of each.
+"""Distinct tracks of icons on the elements of a layout.
 
 A person's surfaces have that person's thresholds, since the scatter of thresholds is published between people and not
 between the hands of one; noise is of each surface's own.

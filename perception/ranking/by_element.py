@@ -1,4 +1,4 @@
-"""Scores and reasons of icons on several elements, element by element."""
+"""Reasons for the distance of two icons by element."""
 
 from __future__ import annotations
 

@@ -147,8 +147,8 @@ def _check_apart(icons: IconSet, layout: Layout, task: Task) -> None:
     layout.check_elements(icons.context.elements)
     if layout.surfaces == "one":
         here = f"the elements of {layout.name or 'this layout'} are on one piece of skin"
-        cure = 'rank on a layout with surfaces = "apart", such as wheel'
-        raise RigError(f'{here} (surfaces = "one"), whose places are not predicted yet: {cure}')
+        cure = 'take elements that are apart (surfaces = "apart"), such as those of wheel'
+        raise RigError(f'{here} (surfaces = "one"), where places are not predicted yet: {cure}')
     if task.gap_s is not None:
         told = "what an icon leaves behind for the next is not predicted on several elements yet"
         raise InputError(f"{told}: leave out the gap of the task")

@@ -23,6 +23,7 @@ from ..observer.channels import MemoryChoice, MemoryForm
 from ..observer.observer_model import Crowd, ObserverModel
 from .assumptions import Assumptions, assumptions_of
 from .batches import Job, PooledResult
+from .place import Place
 from .rules_of_thumb import RuleResult
 from .scores import IconScore, PairScore, counted, disagreements
 
@@ -99,6 +100,11 @@ class Ranking(Drawn, Tabled):
     def rig_changes(self) -> tuple[str, ...]:
         """Keys of the rig that were changed, such as `contact.area_cm2=4`."""
         return () if self.elements else tuple(self.job.rig.changes)
+
+    @property
+    def place(self) -> Place | None:
+        """What is assumed about places; None on one element."""
+        return Place.of(self)
 
     @property
     def seed(self) -> int:
@@ -266,6 +272,7 @@ class Ranking(Drawn, Tabled):
         return [
             {
                 "icon": icon.name,
+                **({"where": ", ".join(icon.where)} if self.elements else {}),
                 "proportion_correct": icon.proportion_correct,
                 "felt_and_named": icon.felt_and_named,
                 "detected_probability": icon.detected_probability,

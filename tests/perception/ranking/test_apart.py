@@ -1,4 +1,4 @@
-"""Icons on elements apart: surfaces are compared one by one, whatever their order and names."""
+"""Icons on elements apart are compared surface by surface."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -182,9 +182,7 @@ def test_the_channel_is_that_of_the_earlier_report() -> None:
 def test_what_is_not_predicted_is_refused_with_a_cure() -> None:
     icons = played(a=f"on left {{ {COOL} }}", b=f"on right {{ {COOL} }}")
     two = layout("left", "right")
-    with pytest.raises(
-        InputError, match=r'one piece of skin .*: rank on a layout with surfaces = "apart", such as wheel$'
-    ):
+    with pytest.raises(InputError, match=r'one piece of skin .*: take .*surfaces = "apart".*, such as those of wheel$'):
         ranked(icons, replace(two, surfaces="one"))
     with pytest.raises(InputError, match=r"leave out the gap of the task$"):
         ranked(icons, two, task=Task(1.0))
