@@ -24,6 +24,9 @@ from .episodes import Episodes, intensity_noise
 Played = NDArray[np.int64]
 """Place (surfaces, icons) of the track that each surface plays in each icon."""
 
+ROUNDING = 1e-12
+"""A track that everybody reports with a smaller probability is not felt, as a rest is not."""
+
 
 def joined(parts: Sequence[Episodes]) -> Episodes:
     """Episodes of tracks on several rigs, one rig after the other."""
@@ -47,38 +50,30 @@ def detected_by_any(parts: Sequence[Detection], played: Played) -> Detection:
 
     Of two reports the earlier counts; in one step of the times, either is the earlier one half of the time.
     """
-    names = ["probability", "cold_share", *["reported"] * all(part.reported is not None for part in parts)]
-    own = [np.concatenate([getattr(part, name) for part in parts], axis=1) for name in names]
-    icons = [_by_any(*(each[:, _active(tracks, own[0])] for each in own)) for tracks in played.T]
-    whole = [np.stack([icon[k] for icon in icons], axis=1) for k in range(len(names))]
-    return Detection(whole[0], whole[1], whole[2] if len(names) > 2 else None, parts[0].dt_s)
-
-
-def _active(tracks: Played, probability: Array) -> Played:
-    """The tracks that anybody reports, at least one: the others change nothing."""
-    active = tracks[probability[:, tracks].any(axis=0)]
-    return active if active.size else tracks[:1]
-
-
-def _by_any(probability: Array, cold: Array, courses: Array | None = None) -> tuple[Array, ...]:
-    """Probability (people,), share of cold and, where they are given, course (people, n_time) from (people, tracks)."""
-    total = _either(probability)
-    if courses is None or len(probability[0]) == 1:
-        return (total, cold[:, 0]) if courses is None else (total, cold[:, 0], courses[:, 0])
+    probability, cold = (
+        np.concatenate([getattr(part, name) for part in parts], axis=1) for name in ("probability", "cold_share")
+    )
+    missed, felt = 1.0 - probability, (probability > ROUNDING).any(axis=0)
+    alone = [tracks[felt[tracks]] if felt[tracks].any() else tracks[:1] for tracks in played.T]
+    each = [probability[:, own[0]] if own.size == 1 else 1.0 - missed[:, own].prod(axis=1) for own in alone]
+    whole = np.stack(each, axis=1)
+    if any(part.reported is None for part in parts):
+        return Detection(whole, np.zeros_like(whole), None, parts[0].dt_s)
+    courses = np.concatenate([part.courses for part in parts], axis=1)
     steps = np.diff(courses, axis=2, prepend=0.0)
-    later = 1.0 - courses + 0.5 * steps  # of the others' reports, those after the middle of a step
-    others = [np.delete(later, place, axis=1).prod(axis=1) for place in range(courses.shape[1])]
-    firsts = (steps * np.stack(others, axis=1)).sum(axis=2)
-    whole, by_cold = firsts.sum(axis=1), (firsts * cold).sum(axis=1)
-    return total, np.divide(by_cold, whole, out=np.zeros_like(whole), where=whole > 0.0), _either(courses)
-
-
-def _either(probability: Array) -> Array:
-    """1 − Π(1 − p) over the second axis; p itself where the others are 0."""
-    total = probability[:, 0]
-    for place in range(1, probability.shape[1]):
-        total = total + probability[:, place] * (1.0 - total)
-    return total
+    later = 1.0 - courses + 0.5 * steps
+    rate = np.divide(steps, later, out=np.zeros_like(steps), where=later > 0.0)
+    shares, reported = [], []
+    for own in alone:
+        if own.size == 1:
+            shares.append(cold[:, own[0]])
+            reported.append(courses[:, own[0]])
+            continue
+        firsts = np.einsum("ptn,pn->pt", rate[:, own], later[:, own].prod(axis=1))
+        sums = firsts.sum(axis=1)
+        shares.append(np.divide((firsts * cold[:, own]).sum(axis=1), sums, out=np.zeros_like(sums), where=sums > 0.0))
+        reported.append(1.0 - (1.0 - courses[:, own]).prod(axis=1))
+    return Detection(whole, np.stack(shares, axis=1), np.stack(reported, axis=1), parts[0].dt_s)
 
 
 def name_apart(

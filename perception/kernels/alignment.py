@@ -192,38 +192,41 @@ def _name_apart(
     most, icons, samples, 4).
     """
     surfaces, icons = played.shape
-    now, alone, missing = np.empty(felt.shape[1:]), np.empty(felt.shape[1]), np.empty(felt.shape[:2])
-    cost, costs, known = np.empty(felt.shape[1] + 1), np.empty(len(felt)), np.zeros(len(felt), dtype=np.int64)
-    total, trial = np.empty(icons), 0
+    now, alone = np.empty((surfaces, *felt.shape[1:])), np.empty((surfaces, felt.shape[1]))
+    missing, cost = np.empty(felt.shape[:2]), np.empty(felt.shape[1] + 1)
+    total, known = np.empty(icons), np.empty((surfaces, len(felt)))
     for j in range(len(felt)):
         for k in range(counts[j]):
             missing[j, k] = unmatched(felt[j, k], intensity)
     for i in range(icons):
         for s in range(noise.shape[3]):
-            for j in range(icons):
-                total[j] = 0.0
             for surface in range(surfaces):
-                own, trial = played[surface, i], trial + 1
+                own = played[surface, i]
                 for k in range(counts[own]):
-                    alone[k] = noisy(felt[own, k], intensity, timing, 1.0, noise[surface, k, i, s], now[k])
+                    alone[surface, k] = noisy(
+                        felt[own, k], intensity, timing, 1.0, noise[surface, k, i, s], now[surface, k]
+                    )
                 for j in range(icons):
-                    other = played[surface, j]
-                    if known[other] != trial:  # icons share tracks
-                        costs[other] = least_cost(
-                            now, counts[own], alone, c, felt[other], counts[other], missing[other], intensity, timing,
-                            cost,
+                    known[surface, played[surface, j]] = -1.0
+            most, ties = math.inf, 0
+            for turn in range(icons):
+                j, total[turn] = (i + turn) % icons, 0.0  # the own name first: the others are soon dearer
+                for surface in range(surfaces):
+                    own, other = played[surface, i], played[surface, j]
+                    if known[surface, other] < 0.0:  # icons share tracks
+                        known[surface, other] = least_cost(
+                            now[surface], counts[own], alone[surface], c, felt[other], counts[other], missing[other],
+                            intensity, timing, cost,
                         )  # fmt: skip
-                        known[other] = trial
-                    total[j] += costs[other]
-            best, ties = math.inf, 0
-            for j in range(icons):
-                best = min(best, total[j])
-            most = best * (1.0 + SAME) + SAME
-            for j in range(icons):
-                ties += total[j] <= most
-            for j in range(icons):
-                if total[j] <= most:
-                    answers[i, j] += 1.0 / ties
+                    total[turn] += known[surface, other]
+                    if total[turn] > most:
+                        break
+                most = min(most, total[turn] * (1.0 + SAME) + SAME)
+            for turn in range(icons):
+                ties += total[turn] <= most
+            for turn in range(icons):
+                if total[turn] <= most:
+                    answers[i, (i + turn) % icons] += 1.0 / ties
 
 
 _compile: Any = kernel(nogil=True)
