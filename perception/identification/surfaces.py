@@ -53,7 +53,7 @@ def detected_by_any(parts: Sequence[Detection], played: Played) -> Detection:
     probability, cold = (
         np.concatenate([getattr(part, name) for part in parts], axis=1) for name in ("probability", "cold_share")
     )
-    missed, felt = 1.0 - probability, (probability > ROUNDING).any(axis=0)
+    missed, felt = 1.0 - probability, np.any(probability > ROUNDING, axis=0)
     alone = [tracks[felt[tracks]] if felt[tracks].any() else tracks[:1] for tracks in played.T]
     each = [probability[:, own[0]] if own.size == 1 else 1.0 - missed[:, own].prod(axis=1) for own in alone]
     whole = np.stack(each, axis=1)

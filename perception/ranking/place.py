@@ -49,7 +49,7 @@ class Place:
         layout, costs = ranking.job.layout, list[TaskCost]()
         predicted = 1.0 - float(ranking.model.people(ranking.people, ranking.seed).lapse.mean()) * (1.0 - 1.0 / SIDES)
         for each in load_records(DATA / "tasks.toml") if len(ranking.elements) == SIDES and not layout.lapse else ():
-            lapse = max(lapse_to(each.central, predicted, 1.0 / SIDES), 0.0)
+            lapse = max((predicted - each.central) / (predicted - 1.0 / SIDES), 0.0)
             named = (1.0 - lapse) * ranking.proportion_correct + lapse / len(ranking.icons)
             costs.append(TaskCost(each, predicted, lapse, named))
         return cls(ranking.elements, layout.lapse, tuple(costs))
@@ -70,12 +70,3 @@ class Place:
             for each in self.costs
         ]  # fmt: skip
         return {"elements": list(self.elements), "surfaces": "apart", "lapse": self.lapse, "costs": costs}
-
-
-def lapse_to(published: float, predicted: float, chance: float) -> float:
-    """The share of trials with any name that turns a prediction into what was published.
-
-    >>> round(lapse_to(0.9, 0.98, 0.5), 3)
-    0.167
-    """
-    return (predicted - published) / (predicted - chance)
