@@ -80,7 +80,7 @@ class Layout:
     Raises
     ------
     RigError
-        Without elements, and where one of several has no name, or the name of another.
+        Without elements, where one of several has no name, or the name of another, and for a lapse beyond 0 to 1.
 
     Examples
     --------
@@ -100,6 +100,8 @@ class Layout:
     def __post_init__(self) -> None:
         object.__setattr__(self, "elements", tuple(self.elements))
         names = [element.name for element in self.elements]
+        if not 0.0 <= self.lapse < 1.0:
+            raise RigError(f"a lapse of {self.lapse:g} must lie in 0 to 1, a share of trials")
         if not names:
             raise RigError("a layout needs at least one element")
         if len(names) > 1 and "" in names:
