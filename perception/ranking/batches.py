@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from hashlib import sha256
-from typing import cast
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from thermicon.base.numbers.arrays import Array, own_arrays
 from thermicon.base.numbers.cores import cores
 from thermicon.circuit import Rig
 from thermicon.circuit.rig.layout import AnyLayout, Layout
-from thermicon.icons import Icon
+from thermicon.icons import Icon, SpatialIcon
 from thermicon.icons.model.iconset import SeveralElements
 
 from ..identification.measures import experiments_bits
@@ -112,10 +111,10 @@ class Job:
     @property
     def icons(self) -> tuple[Icon, ...]:
         """The icons, which are on one element; SeveralElements, with a cure, for others."""
-        if len(self.layout.elements) > 1:
+        if isinstance(self.members[0], SpatialIcon):
             told = "icons on several elements are ranked, and not yet chosen or edited"
             raise SeveralElements(f"{told}; change them in their file, and rank them again")
-        return cast("tuple[Icon, ...]", self.members)
+        return self.members
 
     @property
     def rig(self) -> Rig:

@@ -88,7 +88,7 @@ class Ranking(Drawn, Tabled):
     @property
     def rig(self) -> str:
         """Name of the rig, or of the layout."""
-        return self.job.layout.name if self.elements else self.job.rig.name
+        return (self.job.layout.name or "unnamed") if self.elements else self.job.rig.name
 
     @property
     def elements(self) -> tuple[str, ...]:

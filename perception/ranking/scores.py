@@ -214,10 +214,8 @@ def assemble(
 
     middle, pooled, detected, alert = all_.middle, all_.pooled, all_.detected, all_.each_felt_and_named.mean(axis=0)
     onsets, channels = all_.detection.onset_s, all_.detection.channel
-    compared, names = (
-        PairInputs(tracks, traces, percepts, remembered(percepts, observer), observer, memory),
-        tracks.names,
-    )
+    names = tracks.names
+    compared = PairInputs(tracks, traces, percepts, remembered(percepts, observer), observer, memory)
     pairs = [
         PairScore(
             a=names[i],
