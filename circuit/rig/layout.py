@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Sequence
 from contextlib import suppress
@@ -73,11 +74,13 @@ class Layout:
         Whether elements are on one piece of skin, or apart, as on two hands.
     sinks, supply
         Bodies that several elements give their heat to, and what all drivers together may take; none where not told.
+    lapse
+        Share of trials (0–1) in which what people do besides, such as driving, makes them give any name.
 
     Raises
     ------
     RigError
-        Without elements, and where one of several has no name, or the name of another.
+        Without elements, where one of several has no name, or the name of another, and for a lapse beyond 0 to 1.
 
     Examples
     --------
@@ -92,10 +95,13 @@ class Layout:
     surfaces: Literal["apart", "one"] = "apart"
     sinks: tuple[Sink, ...] = ()
     supply: Supply | None = None
+    lapse: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "elements", tuple(self.elements))
         names = [element.name for element in self.elements]
+        if not 0.0 <= self.lapse < 1.0:
+            raise RigError(f"a lapse of {self.lapse:g} must lie in 0 to 1, a share of trials")
         if not names:
             raise RigError("a layout needs at least one element")
         if len(names) > 1 and "" in names:
@@ -127,22 +133,52 @@ class Layout:
             elements = tuple(_element(table, place, Path(source).parent) for place in range(len(table.element)))
         except RigError as problem:
             raise RigError(f"{where}: {problem}") from None
-        return Layout(elements, table.name, table.title, table.surfaces, tuple(table.sink), table.supply)
+        return Layout(elements, table.name, table.title, table.surfaces, tuple(table.sink), table.supply, table.lapse)
 
     def check_elements(self, names: Sequence[str]) -> None:
         """Raise RigError, with a cure, unless the layout has every element of a set; others may idle."""
         own = [element.name for element in self.elements]
         if not set(names) <= set(own):
-            here = f"the layout {self.name or 'given'} has {', '.join(own)}" if any(own) else "a rig has one element"
-            cure = "name a layout that has them" if any(own) else "name a layout, such as wheel, or your own file"
-            raise RigError(f"the set is for the elements {', '.join(names)}, and {here}: {cure}")
+            what = f"the rig {self.elements[0].rig.name} is one element"
+            if any(own):
+                what = f"the layout {self.name or 'given'} has {', '.join(own)}"
+            shipped = (Layout.load(name) for name in layout_names())
+            fits = [each.name for each in shipped if {*names} <= {element.name for element in each.elements}]
+            cure = f"give a layout that has them, such as {fits[0]}" if fits else "give the file of a layout with them"
+            raise RigError(f"the icons play on {', '.join(names)}, and {what}: {cure}")
+
+    @property
+    def document(self) -> str:
+        """All that counts of the layout as JSON: layouts are equal if their documents are; of one, that of its rig."""
+        if len(self.elements) == 1:
+            return self.alone.document
+        held = {
+            "name": self.name,
+            "surfaces": self.surfaces,
+            "lapse": self.lapse,
+            "elements": [[each.name, each.place_m, each.sink, each.gap_m, each.rig.document] for each in self.elements],
+            "sinks": [sink.model_dump() for sink in self.sinks],
+            "supply": self.supply and self.supply.model_dump(),
+        }
+        return json.dumps(held, ensure_ascii=False)
+
+    @property
+    def toml(self) -> str:
+        """The rig of the only element as the text of a rig file, or those of all, each once, under their names."""
+        if len(self.elements) == 1:
+            return self.alone.toml
+        names: dict[Rig, list[str]] = {}
+        for element in self.elements:
+            names.setdefault(element.rig, []).append(element.name)
+        return "\n".join(f"# {', '.join(named)}\n{rig.toml}" for rig, named in names.items())
 
     @property
     def alone(self) -> Rig:
         """The rig of the only element; raises RigError, with a cure, where there are several."""
         if len(self.elements) > 1:
             names = ", ".join(element.name for element in self.elements)
-            raise RigError(f"a layout of several elements ({names}) cannot be taken here; give the rig of one element")
+            here = f"{self.name or 'this'} is a layout of several elements ({names}), and one plays here"
+            raise RigError(f"{here}; give the rig of one, such as {self.elements[0].rig.name}")
         return self.elements[0].rig
 
 

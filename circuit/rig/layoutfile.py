@@ -58,6 +58,7 @@ class LayoutTable(KeyTable):
     title: kinds.Text = ""
     surfaces: Literal["apart", "one"]
     around_mm: Annotated[float, Field(ge=10, le=2000)] | None = None
+    lapse: Annotated[float, Field(ge=0)] = 0.0
     element: list[ElementTable]
     sink: list[Sink] = Field(default_factory=list)
     supply: Supply | None = None
@@ -71,6 +72,8 @@ class LayoutTable(KeyTable):
                 yield f"two {what}s are called {name}; give each a name of its own"
         if not 2 <= len(names) <= MOST_ELEMENTS:
             yield f"a layout has 2 to {MOST_ELEMENTS} elements, not {len(names)}; for one, give its rig"
+        if self.lapse >= 1.0:
+            yield f"lapse = {self.lapse:g} is no share of trials below 1; for per cent, write {self.lapse / 100:g}"
         if "all" in names:
             yield '"all" means every element, and cannot be the name of one; give that element another name'
         likes = {each.name: each.like for each in self.element}

@@ -123,7 +123,9 @@ class Rig:
         every fault of the file on a line of its own, or the nearest name where there is no such rig.
         """
         if str(source) not in rig_names() and str(source) in shipped_names("layouts") and not Path(source).exists():
-            raise RigError(f"{source}: a layout of several elements cannot be taken here; give the rig of one element")
+            raise RigError(
+                f"{source}: a layout of several elements, and one plays here; give the rig of one, such as thenar"
+            )
         return _read(*named_text(source, rig_names(), "rig", RigError))
 
     @property
@@ -247,7 +249,9 @@ def _read(text: str, where: str) -> Rig:
 def rig_of(document: Mapping[str, Any], where: str) -> Rig:
     """The rig of a document, as its file has it; raises RigError with every fault, on `where`."""
     if isinstance(document.get("element"), list):
-        raise RigError(f"{where}: a layout of several elements cannot be taken here; give the rig file of one element")
+        raise RigError(
+            f"{where}: a layout of several elements, and one plays here; give the rig of one, such as thenar"
+        )
     table = read_table(document, where)
     try:
         return _assemble(table, json.dumps(document, sort_keys=True, ensure_ascii=False))

@@ -147,11 +147,12 @@ Icons = IconSet | Entry | Iterable[Entry] | str | Path
 """What is taken where a set is needed: the set, its name or file, or icons."""
 
 
-def set_of(icons: Icons) -> IconSet:
-    """A set as it is, by its name or file, or of icons; SeveralElements for one on several elements."""
+def set_of(icons: Icons, *, spatial: bool = False) -> IconSet:
+    """A set as it is, by its name or file, or of icons; SeveralElements for a `spatial` one where none is taken."""
     found = read_cue(icons) if isinstance(icons, str | Path) else icons
     found = found if isinstance(found, IconSet) else IconSet.of(found)
-    found.check_one_element()
+    if not spatial:
+        found.check_one_element()
     return found
 
 

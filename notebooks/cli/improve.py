@@ -87,6 +87,7 @@ def improve_command(
 
     wanted = goal_of(goal)
     icons = read_set(files)
+    icons.check_one_element()
     has_families = any(isinstance(entry, Family) for entry in icons.entries)
     as_they_are = choose is not None or up_to is not None or edits
     searched = evaluations is not None or (has_families and not as_they_are)

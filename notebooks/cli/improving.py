@@ -136,7 +136,7 @@ class Request:
         following = after_choice(made, self.command, written)
         if made.choice is None:
             return edits_report(made, self.icons.title, following), refused
-        return rank_report(made, self.icons.title, cures(made.ranking, self.icons, self.rig), following), refused
+        return rank_report(made, self.icons.title, cures(made.ranking, self.icons), following), refused
 
     def alone(self, names: Sequence[str]) -> Ranking:
         """Rank the chosen icons as the set that they are then: nobody names an icon that is not in it."""

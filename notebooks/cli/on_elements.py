@@ -1,4 +1,4 @@
-"""``thermicon simulate`` on several elements: a run for each, on one clock."""
+"""The layout of a command on several elements. ``thermicon simulate`` has a run for each."""
 
 from __future__ import annotations
 
@@ -11,27 +11,35 @@ from ..messages import note, usage
 from .options import RigOptions
 
 if TYPE_CHECKING:
-    from thermicon.circuit import LayoutTrace
+    from thermicon.circuit import Layout, LayoutTrace
     from thermicon.icons import IconSet
 
 
-def simulate_elements(
-    icons: IconSet, name: str | None, asked: RigOptions, file: str, rate_Hz: float, tail_s: float
-) -> list[LayoutTrace]:
-    """The runs of icons on several elements (or of the one named) on a layout, after warnings of its rigs."""
-    from thermicon.circuit import Layout, simulate
+def layout_of(icons: IconSet, asked: RigOptions, file: str) -> Layout:
+    """The layout that a command names for icons on several elements, after warnings of its rigs."""
+    from thermicon.circuit import Layout
 
     if asked.changes:
         help = "write set = { … } into an element of the layout file"
         raise usage(f"changes a key of one rig, and a layout has several: {help}", "--set")
-    names = [icon.name for icon in icons.spatial]
-    if name is not None and name not in names:
-        raise usage(f"no icon is called {name!r}; {did_you_mean(name, names)}", "--icon")
     layout = Layout.of(asked.rig, icons.context.site)
     layout.check_elements(icons.context.elements)
     for rig in dict.fromkeys(element.rig for element in layout.elements):
         warn_of_rig(rig, named=True)
         for warning in site_warnings(file, icons, rig):
             note(f"warning: {warning}")
+    return layout
+
+
+def simulate_elements(
+    icons: IconSet, name: str | None, asked: RigOptions, file: str, rate_Hz: float, tail_s: float
+) -> list[LayoutTrace]:
+    """The runs of icons on several elements (or of the one named) on a layout."""
+    from thermicon.circuit import simulate
+
+    names = [icon.name for icon in icons.spatial]
+    if name is not None and name not in names:
+        raise usage(f"no icon is called {name!r}; {did_you_mean(name, names)}", "--icon")
+    layout = layout_of(icons, asked, file)
     chosen = [icon for icon in icons.spatial if name in (None, icon.name)]
     return [simulate(icon, layout, rate_Hz=rate_Hz, tail_s=tail_s) for icon in chosen]

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from thermicon.circuit import Rig
-    from thermicon.icons import Icon, IconSet
+    from thermicon.icons import Icon, IconSet, SpatialIcon
     from thermicon.perception import Goal, Ranking
     from thermicon.perception.observer.observer_model import ObserverModel
 
@@ -297,7 +297,8 @@ def read_set(files: Sequence[str]) -> IconSet:
                 f"{file} has {told} as in {files[0]}, and one set has these in common: put the icons into one file, "
                 "or take each file by itself"
             )
-        for icon in each:
+        members: tuple[Icon | SpatialIcon, ...] = each.spatial or tuple(each)
+        for icon in members:
             if icon.name in owner:
                 raise JoinError(
                     f"{file}: the icon {icon.name} is also in {owner[icon.name]}; "
@@ -307,7 +308,9 @@ def read_set(files: Sequence[str]) -> IconSet:
     if len(sets) > 1:
         titles = [each.title or Path(file).name for file, each in zip(files, sets, strict=True)]
         title = "; ".join(titles) if any(each.title for each in sets) else ""
-        joined = replace(joined, title=title, entries=tuple(entry for each in sets for entry in each.entries))
+        entries = tuple(entry for each in sets for entry in each.entries)
+        spatial = tuple(icon for each in sets for icon in each.spatial)
+        joined = replace(joined, title=title, entries=entries, spatial=spatial)
     return joined
 
 

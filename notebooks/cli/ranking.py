@@ -19,6 +19,7 @@ from ..messages import fail, note, progress_bar, shown_at_once, usage
 from ..report.following import after_ranking
 from ..report.rank_report import doubt_report, rank_report, rules_report, table_report
 from ..report.terminal import show
+from .on_elements import layout_of
 from .options import (
     CrowdOptions,
     FigureOptions,
@@ -162,11 +163,14 @@ def rank_command(
             f"there are {len(icons):,} icons, and every pair is compared: at most {MOST_ICONS:,} can be ranked at once"
         )
         raise usage(f"{what}; narrow a family, or put its best members into a separate set", "FILE")
+    from thermicon.circuit import Rig
+
     from ..report.set_report import cures, report_of
 
-    where = rig.load(icons, files[0], told=True)
-    warnings = (*where.warnings, *site_warnings(files[0], icons, where))
-    model = crowd.load(where)
+    layout = layout_of(icons, rig, files[0]) if icons.spatial else rig.load(icons, files[0], told=True)
+    rigs = [layout] if isinstance(layout, Rig) else list(dict.fromkeys(each.rig for each in layout.elements))
+    warnings = tuple(text for each in rigs for text in (*each.warnings, *site_warnings(files[0], icons, each)))
+    model = crowd.load(rigs[0])
     draws = crowd.draws(model)
     _say_if_first()
     trials, named = task.load()
@@ -174,20 +178,20 @@ def rank_command(
     watched = len(icons) >= MANY and shown_at_once() and json != STDOUT and crowd.memory != "rules"
 
     def show_table(ranked: SetReport) -> None:
-        show(table_report(ranked, icons.title, cures(ranked.ranking, icons, where), details))
+        show(table_report(ranked, icons.title, cures(ranked.ranking, icons), details))
         typer.echo()
 
     asked["first"] = show_table if watched else None
-    found = report_of(icons, where, draws, warnings=warnings, workers=here, **asked)
+    found = report_of(icons, layout, draws, warnings=warnings, workers=here, **asked)
     if json is not None and json != STDOUT:
         write_text(found.to_json() + "\n", json)
     figure.write_set(found.ranking)
-    near = cures(found.ranking, icons, where) if report is not None or json != STDOUT else {}
+    near = cures(found.ranking, icons) if report is not None or json != STDOUT else {}
     if report is not None:
         from ..report.rank_page import report as page
 
         command = command_text(files, rig, crowd, task)
-        write_text(page(found, icons, where, command, near), report)
+        write_text(page(found, icons, command, near), report)
     if json == STDOUT:
         typer.echo(found.to_json())
     elif crowd.memory == "rules":
@@ -206,6 +210,7 @@ def doubt_about(
     if crowd.intervals is not None and crowd.intervals < FEWEST_DRAWS:
         raise usage(f"{crowd.intervals} draws are too few for --doubt: give {FEWEST_DRAWS} or more", "--intervals")
     icons = read_set(files)
+    icons.check_one_element()
     if len(icons) < 2:
         fail(f"{files[0]}: --doubt needs at least two icons, since one alone is never confused")
     where = rig.load(icons, files[0])

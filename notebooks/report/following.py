@@ -35,6 +35,8 @@ def after_ranking(found: SetReport, command: Command, cures: Mapping[str, str] |
         return f"change the lines of {listed(curable)} as said below, then {command('rank')}"
     if lost:
         return command("simulate", "--icon", lost[0])
+    if found.ranking.elements:
+        return ""  # icons on several elements are neither edited nor chosen
     if not missed and min(found.ranking.felt.detected) < FELT_FROM:
         return _wider(found, command)
     if missed == ["count"]:

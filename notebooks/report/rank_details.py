@@ -31,7 +31,7 @@ DETECTED = (
 def detail_blocks(made: SetReport) -> list[Block]:
     """The scores of the set, its worst pair, and what they depend on."""
     ranking, worst = made.ranking, made.ranking.worst
-    scores = [*number_points(made), *memory_points(ranking), *carried_points(ranking)]
+    scores = [*number_points(made), *memory_points(ranking), *carried_points(ranking), *task_points(ranking)]
     found: list[Block] = [Heading("The set"), Bullets(tuple(scores))]
     if worst is not None:
         confused = f"confused in {percent(worst.confused_probability)} of trials, the mean of both ways"
@@ -77,7 +77,7 @@ def crowd_text(ranking: Ranking | Sensitivity) -> str:
     """For how many people and on which rig, with its changes."""
     what_if = f" with {', '.join(ranking.rig_changes)}" if ranking.rig_changes else ""
     crowd = count_of(ranking.people, "virtual person", "virtual people")
-    return f"{crowd} on the {ranking.rig} rig{what_if}"
+    return f"{crowd} on the {ranking.rig} {'layout' if getattr(ranking, 'elements', ()) else 'rig'}{what_if}"
 
 
 def intervals_text(ranking: Ranking) -> str:
@@ -160,6 +160,14 @@ def carried_points(ranking: Ranking) -> Iterator[str]:
         d_prime, name, before = max((d, name, before) for name, (before, d) in zip(ranking.labels, worst, strict=True))
         after = "a first play of itself" if before == name else before
         yield f"carry-over: largest for {name} after {after}, d′ {number(d_prime)} from {name} alone"
+
+
+def task_points(ranking: Ranking) -> Iterator[str]:
+    """Yield which lapse turns the prediction into what was published for people who did something else too."""
+    for cost in ranking.place.costs if ranking.place else ():
+        told = f"{cost.published.quantity}: {100.0 * cost.published.central:.1f} % ({cost.published.source})"
+        why = f"{percent(cost.predicted)} are predicted without that task, so it costs a lapse of {cost.lapse:.2g}"
+        yield f"{told}; {why}; with it in the layout file, this set is named in {percent(cost.named)}"
 
 
 def edits_blocks(made: SetReport) -> list[Block]:

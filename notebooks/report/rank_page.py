@@ -8,6 +8,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 from thermicon.base.words.number_text import number, percent
+from thermicon.icons import SpatialIcon
 
 from ..figures.print_figure import small_png
 from .blocks import Block, Bullets, Cell, Code, Facts, Heading, Picture, Text, as_html, grid
@@ -16,8 +17,7 @@ from .rank_report import rank_report
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from thermicon.circuit import Rig
-    from thermicon.icons import IconSet
+    from thermicon.icons import Icon, IconSet
     from thermicon.perception import Ranking
 
     from .set_report import SetReport
@@ -38,6 +38,8 @@ LIMITS = (
     "Intervals over people cover differences between people, not errors of the model. The model uncertainty, where it "
     "is given, covers what the data leave open, for this structure of the model.",
 )
+ONE_ELEMENT = "several simultaneous elements", "what elements do to one another"
+"""Words of the limits on one element, and in their place on several, apart."""
 SAFETY = (
     "Icons were checked against temperature limits for skin and display that are this project's own and stricter than "
     "published ones (ISO 13732, IEC 60601-1). This is a calculation, not a medical or ethical clearance. Hardware that "
@@ -48,13 +50,12 @@ SAFETY = (
 def report(
     made: SetReport,
     icons: IconSet,
-    rig: Rig,
     command: str = "",
     cures: Mapping[str, str] | None = None,
 ) -> str:
     """Write the page as HTML text: the same bytes for the same arguments.
 
-    ``icons`` and ``rig`` are those that were ranked, ``command`` reproduces the ranking, ``cures`` explain by name how
+    ``icons`` are those that were ranked, ``command`` reproduces the ranking, ``cures`` explain by name how
     an icon could be reached. No date is printed.
     """
     ranking = made.ranking
@@ -65,27 +66,33 @@ def report(
         Text(f"{lead}: a model's, not measured", "lead"),
         *(Text(f"warning: {line}", "warn") for line in made.warnings),
         *rank_report(made, "", cures, details=True),
-        *_settings(ranking, rig, command),
+        *_settings(ranking, command),
         *view_parts(ranking),
         *_pairs(ranking),
-        *icon_parts(ranking, icons, rig),
+        *icon_parts(ranking),
         Heading("Rig file"),
         Text("The whole rig as it was used, changes included."),
-        Code(ranking.job.rig.toml),
+        Code(ranking.job.layout.toml),
         Heading("Limits of the prediction"),
-        Bullets(LIMITS),
+        Bullets(tuple(line.replace(*ONE_ELEMENT) if ranking.elements else line for line in LIMITS)),
         Heading("Safety"),
         Text(SAFETY),
     ]
     return as_html(parts, f"{title}: predicted ranking")
 
 
-def _settings(ranking: Ranking, rig: Rig, command: str) -> Iterator[Block]:
+def _settings(ranking: Ranking, command: str) -> Iterator[Block]:
     elsewhere = ranking.new_laboratory
     versions = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy"))
     rows = [
         ("command", command),
-        ("rig", f"{ranking.rig}: {rig.site}, {rig.contact.area_m2 * 1e4:g} cm²"),
+        *(
+            (
+                " ".join(filter(None, ("rig", each.name))),
+                f"{each.rig.name}: {each.rig.site}, {each.rig.contact.area_m2 * 1e4:g} cm²",
+            )
+            for each in ranking.job.layout.elements
+        ),
         ("people", f"{ranking.people} virtual, seed {ranking.seed}"),
         ("draws of the posterior", str(elsewhere.draws) if elsewhere else ""),
         ("made with", f"thermicon {ranking.version}, Python {platform.python_version()}, {versions}"),
@@ -148,13 +155,15 @@ def _drawn(axes: Axes, said: str, caption: str) -> Picture:
     return Picture(caption, said, round(96 * figure.get_figwidth()), small_png(figure, MAPS))
 
 
-def icon_parts(ranking: Ranking, icons: IconSet, rig: Rig) -> Iterator[Block]:
-    """Yield every icon: what it scores, its cue text, and an overview of its run."""
+def icon_parts(ranking: Ranking) -> Iterator[Block]:
+    """Yield every icon: what it scores, its cue text, and an overview of its run, or a row for each element."""
     from thermicon.circuit import simulate
 
+    from ..figures.layout_figure import layout_figure
     from ..figures.overview import FELT_TAIL_S, felt, overview
 
-    members = list(icons)
+    members: tuple[Icon | SpatialIcon, ...] = ranking.job.members
+    layout = ranking.job.layout
     yield Heading("Icons")
     if len(members) > MOST_OVERVIEWS:
         yield Text(f"Overviews of the first {MOST_OVERVIEWS} icons; simulate FILE --figure OUT draws all of them.")
@@ -169,6 +178,10 @@ def icon_parts(ranking: Ranking, icons: IconSet, rig: Rig) -> Iterator[Block]:
         text = str(icon)  # without the head of its file
         yield Code(text[text.find("\nicon ") + 1 :].rstrip("\n"))
         if place < MOST_OVERVIEWS:
-            data = small_png(overview(*felt(simulate(icon, rig, tail_s=FELT_TAIL_S)), rig.changes), OVERVIEWS)
+            if isinstance(icon, SpatialIcon):
+                figure = layout_figure(simulate(icon, layout, tail_s=FELT_TAIL_S))
+            else:
+                figure = overview(*felt(simulate(icon, layout, tail_s=FELT_TAIL_S)), layout.alone.changes)
+            data = small_png(figure, OVERVIEWS)
             alt = f"temperatures, heat flow, current and sensation of {icon.name}"
             yield Picture("", alt, OVERVIEW_PIXELS, data)

@@ -34,7 +34,7 @@ BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
 MOST_CONSTANTS = 12
 """Constants in the table of what carries the doubt; a file has them all."""
-ALERT, NAMED = "felt+named", "named"
+ALERT, NAMED, WHERE = "felt+named", "named", "where"
 RANKED = ("icon", "detected", "onset", "channel", ALERT, "most confused with")
 RANKED_BOTH = ("icon", "detected", "onset", ALERT, NAMED, "most confused with")  # without channel a row has 80 columns
 A_POINT = 0.01
@@ -72,6 +72,7 @@ def rank_report(
         *told,
         *([] if details else edits_blocks(made)),
         *([] if shown else table_report(made, "", cures, details)),
+        *([Text(ranking.place.text)] if ranking.place else []),
         *(detail_blocks(made) if details else []),
         Text(caveat(ranking) if details else f"{short} More: {'rank ' * (not following)}--details"),
         *(next_step if shown else []),
@@ -187,10 +188,12 @@ def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = N
     chosen = () if made.choice is None else made.choice.icons
     icons = sorted(icons, key=lambda icon: icon.name not in chosen)
     both = differs(icons)
-    heads = RANKED_BOTH if both else RANKED
+    elements, own = made.ranking.elements, RANKED_BOTH if both else RANKED
+    heads = (own[0], *[WHERE] * bool(elements), *own[1:])
     rows: list[tuple[str | Cell, ...]] = [
         (
             f"{'✓ ' * (icon.name in chosen)}{icon.name}{' *' * (place >= apart)}",
+            *([where_text(icon, elements)] if elements else []),
             percent(icon.detected_probability),
             seconds(icon.onset_s),
             *([] if both else [icon.channel or "–"]),
@@ -205,6 +208,11 @@ def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = N
         rows = [*rows[:most], rest] if chosen else [*rows[: most - 1], rest, rows[-1]]
         apart = min(apart, len(rows) - (apart < len(icons)))
     return grid(heads, rows, ("detected", "onset", ALERT, NAMED), heads, apart)
+
+
+def where_text(icon: IconScore, elements: Sequence[str]) -> str:
+    """The elements that play an icon, or that all of many do."""
+    return "all" if len(icon.where) == len(elements) > 2 else ", ".join(icon.where)
 
 
 def rival(ranking: Ranking, place: int) -> str:

@@ -13,7 +13,7 @@ from ..messages import note, progress_bar, shown_at_once
 from .choices import way_words
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
+    from thermicon.circuit import Layout, Rig
     from thermicon.icons import IconSet
     from thermicon.perception import Goal, Ranking
     from thermicon.perception.selection.advice import Way
@@ -71,7 +71,7 @@ class SetReport:
 @kept_until_done()
 def report_of(
     icons: IconSet,
-    rig: Rig,
+    rig: Rig | Layout,
     draws: int,
     *,
     edits: Literal["worst", "all", "none"] = "worst",
@@ -86,7 +86,7 @@ def report_of(
     """Rank a set; choose of it, judge it by a goal and edit its pairs, as far as that is asked.
 
     `draws` are those of an interval, `how` other arguments of `rank`. With `make_edits`, the edited set is ranked too.
-    `first` gets the ranking before the rest is computed.
+    `first` gets the ranking before the rest is computed. Icons on several elements are not edited.
     """
     from thermicon.perception import choose, rank
     from thermicon.perception.kernels.parallel import beside, step_counter
@@ -107,6 +107,7 @@ def report_of(
         first(SetReport(ranking, warnings=warnings))
     # One edit takes as long as the draws, mostly on one core; more of them wait for the draws.
     cores = workers if isinstance(workers, int) else None
+    edits = "none" if icons.spatial else edits
     edited = beside(lambda: cheapest_edits(without, edits, workers), cores if edits == "worst" else 1)
     choice = None
     with progress_bar("intervals" if choosing is None else "choosing") as progress:
@@ -116,7 +117,7 @@ def report_of(
             ranking = with_intervals(ranking, draws, step_counter(progress, draws), workers)
     reached = None if goal is None else judge_goal(goal, ranking, choice)
     found, ways, after = edited(), tuple[Way, ...](), None
-    if reached is not None and not reached.met:
+    if reached is not None and not (reached.met or icons.spatial):
         if shown_at_once():
             note("trying ways to the goal …")
         ways = until_met(ways_to(ranking, reached, draws, found, choice, () if choosing is None else choosing.must))
@@ -157,10 +158,12 @@ def chosen(
     )
 
 
-def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:
-    """Return, by name, how each icon that the rig does not reach could be changed so that it is reached."""
+def cures(ranking: Ranking, icons: IconSet) -> dict[str, str]:
+    """Return, by name, how each icon that its rig does not reach could be changed so that it is reached."""
     from thermicon.circuit import nearest_reachable
 
+    if icons.spatial:
+        return {}
     missed = {score.name for score in ranking.icons if not score.reachable}
-    near = {icon.name: nearest_reachable(icon, rig) for icon in icons if icon.name in missed}
+    near = {icon.name: nearest_reachable(icon, ranking.job.rig) for icon in icons if icon.name in missed}
     return {name: found.sentence for name, found in near.items() if found is not None}

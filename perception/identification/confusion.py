@@ -122,10 +122,10 @@ def confuse(
         named = np.stack([np.stack([right, 1.0 - right], -1), np.stack([1.0 - right, right], -1)], -2)
     else:
         named = _sampled(embed(distances), distances, seed, samples, first)
-    return _with_lapses(named, lapse, samples if icons > 2 else math.inf)
+    return with_lapses(named, lapse, samples if icons > 2 else math.inf)
 
 
-def _with_lapses(named: Array, lapse: ArrayLike, samples: float) -> Confusion:
+def with_lapses(named: Array, lapse: ArrayLike, samples: float) -> Confusion:
     """Confusions of people who give any name in a share of trials; as accurate as so many samples of an icon are."""
     people, icons = named.shape[:2]
     lapses = np.broadcast_to(np.asarray(lapse, dtype=np.float64), (people,))[:, None, None]
@@ -268,4 +268,4 @@ def name_directly(
 
     over_rows(work, people, people * icons * icons * samples)
     apart = episode_distances(felt, felt, observer, "naming", own)
-    return _with_lapses(shared_among_identical(counts / samples, apart), lapse, samples)
+    return with_lapses(shared_among_identical(counts / samples, apart), lapse, samples)

@@ -31,7 +31,7 @@ from ..sensation.detection import pooled
 from .confusion import few_named
 from .measures import felt_and_named, information_bits, proportion_correct
 from .pairs import pair_scores, with_pairs
-from .population import ReceptorTemperatures, identify, memory_dprime, respond
+from .population import AnyTemperatures, identify, memory_dprime, respond
 from .task import USUAL, Task
 
 LOG_FROM = 1.5
@@ -225,7 +225,7 @@ class LaboratoryDraws:
 
 
 def laboratory_draws(
-    played: Callable[[int], ReceptorTemperatures],
+    played: Callable[[int], AnyTemperatures],
     persons: People,
     memory: MemoryChoice,
     model: ObserverModel,
@@ -263,7 +263,7 @@ def laboratory_draws(
 
 
 def _acting(
-    laboratories: DrawnLaboratories, played: ReceptorTemperatures, pairs: Array, count: int, seed: int, task: Task
+    laboratories: DrawnLaboratories, played: AnyTemperatures, pairs: Array, count: int, seed: int, task: Task
 ) -> NDArray[np.bool_]:
     """Whether each constant (constants,), moved alone as far as the draws go, changes what a few people say.
 
@@ -294,7 +294,7 @@ def _acting(
 
 
 def scored(
-    few: ReceptorTemperatures,
+    few: AnyTemperatures,
     laboratory: DrawnLaboratory,
     apart_by: MemoryForm,
     pairs: Array,

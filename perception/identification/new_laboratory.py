@@ -8,13 +8,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from thermicon.base.numbers.arrays import Array
-from thermicon.circuit import Rig
-from thermicon.icons import Icon
 
 from ..observer.channels import FORM, MemoryChoice
 from ..observer.draws import NEGLIGIBLE
@@ -32,12 +30,17 @@ from .laboratory_draws import (
     people_for_intervals,
     scored,
 )
-from .population import RATE_HZ, ReceptorTemperatures
+from .population import RATE_HZ, ReceptorTemperatures, TrackTemperatures
 from .task import USUAL, Task
+from .tracks import Tracks
 
 DRAWS = 128
 """The ends of the interval scatter by one to two points of per cent correct from seed to seed."""
 COVER = (2.5, 97.5)
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import Icon
 
 Interval = tuple[float, float]
 NEW_LABORATORY = (
@@ -135,8 +138,7 @@ class Nominal:
 
 
 def new_laboratory(
-    icons: Sequence[Icon],
-    rig: Rig,
+    tracks: Tracks,
     end_s: float,
     crowd: People,
     predicted: Nominal,
@@ -158,13 +160,16 @@ def new_laboratory(
     """
     if draws < 2:
         raise ValueError(f"an interval needs at least two draws of the constants, not {draws}")
-    own, count = ObserverModel.of(model), len(icons)
+    own, count = ObserverModel.of(model), len(tracks.names)
     status = own.drawn.header.status
     persons = crowd.part(0, min(len(crowd), people_for_intervals(count)))
-    few = ReceptorTemperatures.at_depths(
-        icons, persons, rig, rungs([own.nominal, *own.some_draws(draws)], persons.corneum_m(rig)), end_s,
-        RATE_HZ / (EVERY if count <= MANY else 2 * EVERY), tracking,
-    )  # fmt: skip
+    observers, rate_Hz = [own.nominal, *own.some_draws(draws)], RATE_HZ / (EVERY if count <= MANY else 2 * EVERY)
+
+    def played(icons: Sequence[Icon], rig: Rig) -> ReceptorTemperatures:
+        depths_m = rungs(observers, persons.corneum_m(rig))
+        return ReceptorTemperatures.at_depths(icons, persons, rig, depths_m, end_s, rate_Hz, tracking)
+
+    few = TrackTemperatures.of(tracks, played)
     each = laboratory_draws(
         lambda _: few, persons, memory, own, draws=draws, seed=seed, task=task, resampled=True, step=step,
         cluster=cluster,

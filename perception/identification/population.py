@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +23,7 @@ from .depths import between
 from .episodes import Episodes, episode_distances
 from .measures import information_bits
 from .task import USUAL, Task
+from .tracks import Tracks
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -115,11 +116,45 @@ class ReceptorTemperatures:
 
 
 @dataclass(frozen=True, slots=True)
+class TrackTemperatures:
+    """Temperatures at the receptors for the tracks of icons, one rig after the other."""
+
+    parts: tuple[ReceptorTemperatures, ...]
+    tracks: Tracks
+
+    @classmethod
+    def of(cls, tracks: Tracks, part: Callable[[Sequence[Icon], Rig], ReceptorTemperatures]) -> TrackTemperatures:
+        """Those that `part` finds for the icons on each rig."""
+        return cls(tuple(part(icons, rig) for rig, icons in tracks.by_rig), tracks)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the icons."""
+        return self.tracks.names
+
+    def first(self, people: int) -> TrackTemperatures:
+        """Those of the first people."""
+        return replace(self, parts=tuple(part.first(people) for part in self.parts))
+
+
+AnyTemperatures = ReceptorTemperatures | TrackTemperatures
+
+
+@dataclass(frozen=True, slots=True)
 class PopulationResponse:
-    """Episodes of every person and icon, and detection probabilities (people, icons); None where not asked for."""
+    """Episodes of every person and icon, and detection probabilities (people, icons); None where not asked for.
+
+    Of icons on several elements the episodes are those of the `tracks`.
+    """
 
     episodes: Episodes
     detection: Detection | None
+    tracks: Tracks | None = None
+
+    @property
+    def icons(self) -> int:
+        """Number of icons."""
+        return int(self.episodes.counts.shape[1]) if self.tracks is None else len(self.tracks.names)
 
     @property
     def detected(self) -> Detection:
@@ -130,9 +165,17 @@ class PopulationResponse:
 
 
 def respond(
-    played: ReceptorTemperatures, crowd: People, observer: Observer, *, detection: bool = True, times: bool = False
+    played: AnyTemperatures, crowd: People, observer: Observer, *, detection: bool = True, times: bool = False
 ) -> PopulationResponse:
     """Episodes of every icon for every person, optionally with detection and with the times of its reports."""
+    if isinstance(played, TrackTemperatures):
+        parts = [respond(part, crowd, observer, detection=detection, times=times) for part in played.parts]
+        if (places := played.tracks.played) is None:
+            return parts[0]
+        from .surfaces import detected_by_any, joined
+
+        seen = detected_by_any([part.detected for part in parts], places) if detection else None
+        return PopulationResponse(joined([part.episodes for part in parts]), seen, played.tracks)
     cold, warm, dt = _sensations(played, crowd, observer)
     found = _detection(cold, warm, dt, played.site, crowd, observer, times) if detection else None
     return PopulationResponse(Episodes.of(cold, warm, dt, observer, played.names), found)
@@ -179,6 +222,10 @@ def _detection(
 def memory_dprime(felt: PopulationResponse, form: MemoryForm, memory: Array, observer: Observer, task: Task) -> Array:
     """Pairwise d′ from memory (people, icons, icons) by one form; `memory` (people,) multiplies its noise."""
     apart: Array = episode_distances(felt.episodes, felt.episodes, observer, form, memory)
+    if felt.tracks is not None and felt.tracks.played is not None:
+        from .surfaces import added
+
+        return added(apart, felt.tracks.played)
     if task.carried:
         noise = memory[:, None, None]
         apart = apart * noise / task.between(noise, form)
@@ -197,13 +244,21 @@ def identify(
     d_prime: Array | None = None,
 ) -> Confusion:
     """Confusions with the noise of people numbered from `first`; `d_prime` are those of the form, where known."""
+    lapse = crowd.lapse if felt.tracks is None else felt.tracks.lapses(crowd.lapse)
+    if form == "naming" and felt.tracks is not None and felt.tracks.played is not None:
+        from .surfaces import name_apart
+
+        return name_apart(
+            felt.episodes, felt.tracks.played, observer, memory=crowd.memory, lapse=lapse, seed=seed,
+            samples=min(samples, NAMED_SAMPLES), first=first,
+        )  # fmt: skip
     if form == "naming":
         return name_directly(
             felt.episodes, observer, memory=crowd.memory, louder=task.louder(crowd.memory, form), lapse=crowd.lapse,
             seed=seed, samples=min(samples, NAMED_SAMPLES), first=first,
         )  # fmt: skip
     apart = memory_dprime(felt, form, crowd.memory, observer, task) if d_prime is None else d_prime
-    return confuse(apart, lapse=crowd.lapse, seed=seed, samples=samples, first=first)
+    return confuse(apart, lapse=lapse, seed=seed, samples=samples, first=first)
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,7 +299,7 @@ def identify_by(
     task: Task = USUAL,
 ) -> Identification:
     """The same by every form, of which laboratories have these shares."""
-    forms, samples = list(shares), form_samples(shares, felt.episodes.counts.shape[1])
+    forms, samples = list(shares), form_samples(shares, felt.icons)
     d_prime = memory_dprime(felt, forms[0], crowd.memory, observer, task)
     known = {forms[0]: d_prime}
     found = {

@@ -16,6 +16,8 @@ from thermicon.base.numbers.compiled import kernel
 
 from .episodes import CUT, INTENSITY, LENGTH, NOISE, ONSET, PAUSE, QUALITY, RATE, RISE
 
+SAME = 1e-12
+"""Sums of costs that differ by less, as a share or in d′², differ by their order alone."""
 SHARES = 5
 MISSING, BY_INTENSITY, BY_RATE, BY_LENGTH, BY_PAUSE = range(SHARES)
 """Places of the parts of d′²: episodes without a partner, and the features of those with one."""
@@ -142,6 +144,18 @@ def _distances(
                 apart[person, i, i] = 0.0
 
 
+def _noisy(x: Any, intensity: Any, timing: float, louder: float, z: Any, now: Any) -> float:
+    """Put an episode with its noise, `louder` times standard normal numbers z (4,), into `now`; its g is returned."""
+    sd = intensity[int(x[QUALITY])]
+    total = math.sqrt(sd * sd + x[NOISE] * x[NOISE])
+    put(now, x)
+    now[INTENSITY] = x[INTENSITY] + total * louder * z[0]
+    now[RATE] = x[RATE] + timing * louder * z[1]
+    now[LENGTH] = x[LENGTH] + timing * louder * z[2]
+    now[PAUSE] = x[PAUSE] + timing * louder * z[3]
+    return float(max(min((x[INTENSITY] - x[ONSET]) / total, x[RISE]) + louder * z[0], 0.0))
+
+
 def _name(
     felt: Any, counts: Any, intensity: Any, timing: float, louder: Any, c: float, noise: Any, answers: Any
 ) -> None:
@@ -160,21 +174,59 @@ def _name(
     for i in range(icons):
         for s in range(noise.shape[2]):
             for k in range(counts[i]):
-                x, z = felt[i, k], noise[k, i, s]
-                sd = intensity[int(x[QUALITY])]
-                total = math.sqrt(sd * sd + x[NOISE] * x[NOISE])
-                put(now[k], x)
-                now[k, INTENSITY] = x[INTENSITY] + total * louder[i] * z[0]
-                now[k, RATE] = x[RATE] + timing * louder[i] * z[1]
-                now[k, LENGTH] = x[LENGTH] + timing * louder[i] * z[2]
-                now[k, PAUSE] = x[PAUSE] + timing * louder[i] * z[3]
-                alone[k] = max(min((x[INTENSITY] - x[ONSET]) / total, x[RISE]) + louder[i] * z[0], 0.0)
+                alone[k] = noisy(felt[i, k], intensity, timing, louder[i], noise[k, i, s], now[k])
             best, name = math.inf, 0
             for j in range(icons):
                 square = least_cost(now, counts[i], alone, c, felt[j], counts[j], missing[j], intensity, timing, cost)
                 if square < best:
                     best, name = square, j
             answers[i, name] += 1.0
+
+
+def _name_apart(
+    felt: Any, counts: Any, played: Any, intensity: Any, timing: float, c: float, noise: Any, answers: Any
+) -> None:
+    """The same for icons on several surfaces: costs add over surfaces, and names of one cost share an answer.
+
+    `felt` (tracks, room, FEATURES), `played` (surfaces, icons) the track of a surface in an icon, `noise` (surfaces,
+    most, icons, samples, 4).
+    """
+    surfaces, icons = played.shape
+    now, alone = np.empty((surfaces, *felt.shape[1:])), np.empty((surfaces, felt.shape[1]))
+    missing, cost = np.empty(felt.shape[:2]), np.empty(felt.shape[1] + 1)
+    total, known = np.empty(icons), np.empty((surfaces, len(felt)))
+    for j in range(len(felt)):
+        for k in range(counts[j]):
+            missing[j, k] = unmatched(felt[j, k], intensity)
+    for i in range(icons):
+        for s in range(noise.shape[3]):
+            for surface in range(surfaces):
+                own = played[surface, i]
+                for k in range(counts[own]):
+                    alone[surface, k] = noisy(
+                        felt[own, k], intensity, timing, 1.0, noise[surface, k, i, s], now[surface, k]
+                    )
+                for j in range(icons):
+                    known[surface, played[surface, j]] = -1.0
+            most, ties = math.inf, 0
+            for turn in range(icons):
+                j, total[turn] = (i + turn) % icons, 0.0  # the own name first: the others are soon dearer
+                for surface in range(surfaces):
+                    own, other = played[surface, i], played[surface, j]
+                    if known[surface, other] < 0.0:  # icons share tracks
+                        known[surface, other] = least_cost(
+                            now[surface], counts[own], alone[surface], c, felt[other], counts[other], missing[other],
+                            intensity, timing, cost,
+                        )  # fmt: skip
+                    total[turn] += known[surface, other]
+                    if total[turn] > most:
+                        break
+                most = min(most, total[turn] * (1.0 + SAME) + SAME)
+            for turn in range(icons):
+                ties += total[turn] <= most
+            for turn in range(icons):
+                if total[turn] <= most:
+                    answers[i, (i + turn) % icons] += 1.0 / ties
 
 
 _compile: Any = kernel(nogil=True)
@@ -185,4 +237,6 @@ aligned: Any = _compile(_aligned)
 of_pair: Any = _compile(_of_pair)
 least_cost: Any = _compile(_least_cost)
 distances: Any = _compile(_distances)
+noisy: Any = _compile(_noisy)
 name: Any = _compile(_name)
+name_apart: Any = _compile(_name_apart)

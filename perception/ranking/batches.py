@@ -15,18 +15,22 @@ import numpy as np
 from thermicon.base.numbers.arrays import Array, own_arrays
 from thermicon.base.numbers.cores import cores
 from thermicon.circuit import Rig
-from thermicon.icons import Icon
+from thermicon.circuit.rig.layout import AnyLayout, Layout
+from thermicon.icons import Icon, SpatialIcon
+from thermicon.icons.model.iconset import SeveralElements
 
 from ..identification.measures import experiments_bits
 from ..identification.population import (
     RATE_HZ,
     PopulationResponse,
     ReceptorTemperatures,
+    TrackTemperatures,
     identify_by,
     memory_dprime,
     respond,
 )
 from ..identification.task import USUAL, Task
+from ..identification.tracks import Members, Tracks
 from ..kernels.cluster import code_digest
 from ..kernels.parallel import in_order
 from ..observer.channels import MemoryChoice, MemoryForm
@@ -71,14 +75,14 @@ class BatchResult:
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """Icons on a rig, simulated to one common end (s), for people drawn from a seed, with forms of memory.
+    """Icons on a layout, simulated to one common end (s), for people drawn from a seed, with forms of memory.
 
     `shares` are those of laboratories with each form that counts; distances and reasons are those of the first.
     `observer` is another than the shipped one. Its draws of the posterior do not travel with the job.
     """
 
-    icons: tuple[Icon, ...]
-    rig: Rig
+    members: Members
+    layout: Layout
     end_s: float
     people: int
     seed: int
@@ -91,24 +95,42 @@ class Job:
 
     @classmethod
     def of(
-        cls, icons: Sequence[Icon], rig: Rig, crowd: Crowd, end_s: float, trials: int = TRIALS, task: Task = USUAL
+        cls, icons: Members, rig: AnyLayout, crowd: Crowd, end_s: float, trials: int = TRIALS, task: Task = USUAL
     ) -> Job:
         """The job of ranking icons by a crowd."""
         # Batches need no draws, and of the shipped model nothing, which every worker has.
         other = replace(crowd.model, posterior=None) if crowd.model.key else None
         shares = tuple(crowd.model.form_shares(crowd.memory).items())
         own = crowd.people, crowd.seed, trials, crowd.tracking, crowd.memory, shares
-        return cls(tuple(icons), rig, end_s, *own, task, other)
+        return cls(icons, Layout.of(rig), end_s, *own, task, other)
 
     def crowd(self, model: ObserverModel) -> Crowd:
         """The people who feel and remember the icons."""
         return Crowd(self.people, self.seed, self.tracking, self.memory, model)
 
     @property
+    def icons(self) -> tuple[Icon, ...]:
+        """The icons, which are on one element; SeveralElements, with a cure, for others."""
+        if isinstance(self.members[0], SpatialIcon):
+            told = "icons on several elements are ranked, and not yet chosen or edited"
+            raise SeveralElements(f"{told}; change them in their file, and rank them again")
+        return self.members
+
+    @property
+    def rig(self) -> Rig:
+        """The rig of the only element; RigError, with a cure, where there are several."""
+        return self.layout.alone
+
+    @property
+    def tracks(self) -> Tracks:
+        """What the elements play."""
+        return Tracks.of(self.members, self.layout)
+
+    @property
     def at_once(self) -> int:
         """Number of people in a batch."""
         rows = int(self.end_s * RATE_HZ) + 2
-        return max(1, SAMPLES_AT_ONCE // (rows * len(self.icons)))
+        return max(1, SAMPLES_AT_ONCE // (rows * self.tracks.count))
 
     @property
     def batches(self) -> int:
@@ -125,7 +147,7 @@ class Job:
         model = self.observer.digest if self.observer else None
         how = self.end_s, self.people, self.seed, self.trials, self.tracking, self.memory, self.shares, self.task, model
         return sha256(
-            "\0".join([code_digest(), self.rig.document, repr(how), *map(str, self.icons)]).encode()
+            "\0".join([code_digest(), self.layout.document, repr(how), *map(str, self.members)]).encode()
         ).hexdigest()
 
     @property
@@ -138,8 +160,11 @@ def _respond(job: Job, number: int) -> tuple[People, Observer, PopulationRespons
     """The people of one batch, the nominal observer, and what these people feel."""
     model = ObserverModel.of(job.observer)
     crowd, observer = model.people(job.people, job.seed).part(*job.span(number)), model.nominal
-    played = ReceptorTemperatures.simulated(job.icons, crowd, job.rig, observer, job.end_s, RATE_HZ, job.tracking)
-    return crowd, observer, respond(played, crowd, observer, times=True)
+
+    def played(icons: Sequence[Icon], rig: Rig) -> ReceptorTemperatures:
+        return ReceptorTemperatures.simulated(icons, crowd, rig, observer, job.end_s, RATE_HZ, job.tracking)
+
+    return crowd, observer, respond(TrackTemperatures.of(job.tracks, played), crowd, observer, times=True)
 
 
 def run(job: Job, number: int) -> BatchResult:
@@ -149,7 +174,7 @@ def run(job: Job, number: int) -> BatchResult:
     found = identify_by(felt, dict(job.shares), crowd, observer, job.seed, start, job.task)
     named = [each.probability for each in found.by_form.values()]
     reported = [experiments_bits(each, job.trials, job.seed, EXPERIMENTS, start).mean(axis=1) for each in named]
-    first, second = np.triu_indices(len(job.icons), 1)
+    first, second = np.triu_indices(len(job.members), 1)
     return BatchResult(
         detected=felt.detected.probability,
         cold_share=felt.detected.cold_share,
@@ -242,7 +267,7 @@ def felt_by_people(job: Job, first: int, step: Callable[[], None]) -> Iterator[F
 
     Icons are not named, which takes most of the time of many icons; `step` is called after each batch.
     """
-    one, other = np.triu_indices(len(job.icons), 1)
+    one, other = np.triu_indices(len(job.members), 1)
 
     def felt_in(number: int) -> tuple[Array, ...]:
         crowd, observer, felt = _respond(job, number)

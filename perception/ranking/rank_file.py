@@ -54,7 +54,8 @@ def ranking_file(ranking: Ranking) -> dict[str, Any]:
             "thermicon": ranking.version,
             "rig": ranking.rig,
             "rig_changes": list(ranking.rig_changes),
-            "rig_text": ranking.job.rig.toml,
+            "rig_text": ranking.job.layout.toml,
+            **({"place": place.to_dict()} if (place := ranking.place) else {}),
             "observer": ranking.observer,
             "warnings": [],
             "seed": ranking.seed,
@@ -166,7 +167,8 @@ def _set(ranking: Ranking, asked: NewLaboratory | None) -> dict[str, Any]:
 def _icon(icon: IconScore) -> dict[str, Any]:
     held: dict[str, Any] = {key: getattr(icon, key) for key in ICON_KEYS}
     held |= {key: dict(zip(AT_RECEPTORS, held[key], strict=True)) for key in TWO_NUMBERS}
-    return {**held, "rules": [rule.to_dict() for rule in icon.rules]}
+    where = {"where": list(icon.where)} if icon.where else {}
+    return {**held, "rules": [rule.to_dict() for rule in icon.rules], **where}
 
 
 def _map(ranking: Ranking) -> dict[str, Any]:

@@ -23,6 +23,7 @@ from ..observer.channels import MemoryChoice, MemoryForm
 from ..observer.observer_model import Crowd, ObserverModel
 from .assumptions import Assumptions, assumptions_of
 from .batches import Job, PooledResult
+from .place import Place
 from .rules_of_thumb import RuleResult
 from .scores import IconScore, PairScore, counted, disagreements
 
@@ -86,13 +87,24 @@ class Ranking(Drawn, Tabled):
 
     @property
     def rig(self) -> str:
-        """Name of the rig."""
-        return self.job.rig.name
+        """Name of the rig, or of the layout."""
+        return (self.job.layout.name or "unnamed") if self.elements else self.job.rig.name
+
+    @property
+    def elements(self) -> tuple[str, ...]:
+        """Names of the elements of the layout; empty for a rig."""
+        elements = self.job.layout.elements
+        return tuple(element.name for element in elements) if len(elements) > 1 else ()
 
     @property
     def rig_changes(self) -> tuple[str, ...]:
         """Keys of the rig that were changed, such as `contact.area_cm2=4`."""
-        return tuple(self.job.rig.changes)
+        return () if self.elements else tuple(self.job.rig.changes)
+
+    @property
+    def place(self) -> Place | None:
+        """What is assumed about places; None on one element."""
+        return Place.of(self)
 
     @property
     def seed(self) -> int:
@@ -109,7 +121,9 @@ class Ranking(Drawn, Tabled):
         """What every virtual person receives: `replay`, `display` or `ideal`."""
         from thermicon.circuit.solver.batch import usual_tracking
 
-        return self.job.tracking or ", ".join(sorted({usual_tracking(icon) for icon in self.job.icons}))
+        return self.job.tracking or ", ".join(
+            sorted({usual_tracking(icon) for _, tracks in self.job.tracks.by_rig for icon in tracks})
+        )
 
     @property
     def memory(self) -> MemoryChoice:
@@ -183,10 +197,10 @@ class Ranking(Drawn, Tabled):
 
     @property
     def assumptions(self) -> Assumptions:
-        """The most influential assumptions, where people and draws show them."""
+        """The most influential assumptions, where people and draws show them; of several rigs about the first."""
         crowd, elsewhere = self.model.people(self.people, self.seed), self.new_laboratory
         each = None if elsewhere is None else elsewhere.each
-        return assumptions_of(self.felt.correct, crowd, self.job.rig, self.model.nominal, each)
+        return assumptions_of(self.felt.correct, crowd, self.job.tracks.by_rig[0][0], self.model.nominal, each)
 
     @property
     def total_s(self) -> float:
@@ -258,6 +272,7 @@ class Ranking(Drawn, Tabled):
         return [
             {
                 "icon": icon.name,
+                **({"where": ", ".join(icon.where)} if self.elements else {}),
                 "proportion_correct": icon.proportion_correct,
                 "felt_and_named": icon.felt_and_named,
                 "detected_probability": icon.detected_probability,

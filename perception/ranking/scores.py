@@ -17,19 +17,20 @@ import numpy as np
 from thermicon.base.words.number_text import decimals, significant
 
 from ..criteria import DISTINGUISHABLE_DPRIME, FELT_FROM
-from ..identification.episodes import Episodes, remembered
-from ..observer.observer import Channel, MemoryForm, Observer
+from ..identification.episodes import remembered
+from ..identification.tracks import Tracks
+from ..observer.observer import CHANNELS, Channel, MemoryForm, Observer
 from ..sensation.coverage import outside_data
 from ..sensation.detection import channel_name
 from ..sensation.features import attack_K_per_s, delay_s, peak_change_K
 from ..sensation.percept import Percept
 from .batches import PooledResult
-from .reasons import DistanceComponent, components_of, pair_reasons
-from .rules_of_thumb import DISTINGUISHABLE, OURS, RuleResult, icon_rules, pair_rules
+from .by_element import PairInputs
+from .reasons import DistanceComponent
+from .rules_of_thumb import DISTINGUISHABLE, OURS, RuleResult, icon_rules
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace
-    from thermicon.icons import Icon
 
 AT_RECEPTOR = ("change at the receptor", "rate at the receptor")
 """Rules that an icon passes which is felt."""
@@ -38,6 +39,8 @@ AT_RECEPTOR = ("change at the receptor", "rate at the receptor")
 @dataclass(frozen=True, slots=True)
 class IconScore:
     """One icon of a ranking: detection, onset, channel and proportion named are of the people, the rest is nominal.
+
+    On several elements, changes at the receptors are of the element that changes most, rules of that detected most.
 
     Attributes
     ----------
@@ -59,6 +62,8 @@ class IconScore:
         Soft safety limits that it exceeds, and where no data support the prediction.
     duration_s, energy_J
         How long it lasts, s, and what the driver puts into the module until then, J; NaN on a thermode.
+    where
+        The elements that play it; empty on one element.
     """
 
     name: str
@@ -78,6 +83,7 @@ class IconScore:
     outside_data: tuple[str, ...] = ()
     duration_s: float = math.nan
     energy_J: float = math.nan
+    where: tuple[str, ...] = ()
     pairs: tuple[PairScore, ...] = field(default=(), repr=False, compare=False)
 
     @property
@@ -94,17 +100,6 @@ class IconScore:
     def playable(self) -> bool:
         """Whether the icon is safe and the rig reaches it."""
         return self.safe and self.reachable
-
-
-@dataclass(frozen=True, slots=True)
-class PairInputs:
-    """The input of reasons and rules of pairs: icons on the nominal rig, as a nominal person feels them."""
-
-    traces: Sequence[Trace]
-    percepts: Sequence[Percept]
-    episodes: Episodes
-    observer: Observer
-    memory: MemoryForm
 
 
 @dataclass(frozen=True)
@@ -127,15 +122,12 @@ class PairScore:
     @property
     def why(self) -> tuple[str, ...]:
         """Reasons for the distance of the two, in sentences."""
-        of, (i, j) = self.compared, self.places
-        felt = of.percepts[i], of.percepts[j]
-        return pair_reasons(of.traces[i], of.traces[j], felt, of.observer, of.memory, of.episodes, self.places)
+        return self.compared.why(*self.places)
 
     @cached_property
     def rules(self) -> tuple[RuleResult, ...]:
         """Rules of thumb on the pair."""
-        i, j = self.places
-        return pair_rules(self.compared.traces[i], self.compared.traces[j])
+        return self.compared.rules(*self.places)
 
     @property
     def rules_margin(self) -> float | None:
@@ -145,7 +137,7 @@ class PairScore:
     @property
     def parts(self) -> tuple[DistanceComponent, ...]:
         """Components of the distance."""
-        return components_of(self.compared.episodes, *self.places, self.compared.observer)
+        return self.compared.parts(*self.places)
 
     @property
     def rules_pass(self) -> bool:
@@ -209,7 +201,7 @@ def disagreements(icons: Sequence[IconScore], pairs: Sequence[PairScore]) -> tup
 
 
 def assemble(
-    icons: Sequence[Icon],
+    tracks: Tracks,
     traces: Sequence[Trace],
     durations_s: Sequence[float],
     percepts: Sequence[Percept],
@@ -217,50 +209,62 @@ def assemble(
     memory: MemoryForm,
     observer: Observer,
 ) -> tuple[tuple[IconScore, ...], tuple[PairScore, ...]]:
-    """Scores of all icons and of all pairs, in file order."""
+    """Scores of all icons and of all pairs, in file order, from the traces of the tracks and what they feel like."""
     from thermicon.circuit.safety.verdict import judge_safety
 
     middle, pooled, detected, alert = all_.middle, all_.pooled, all_.detected, all_.each_felt_and_named.mean(axis=0)
     onsets, channels = all_.detection.onset_s, all_.detection.channel
-    compared = PairInputs(traces, percepts, remembered(percepts, observer), observer, memory)
+    names = tracks.names
+    compared = PairInputs(tracks, traces, percepts, remembered(percepts, observer), observer, memory)
     pairs = [
         PairScore(
-            a=icons[i].name,
-            b=icons[j].name,
+            a=names[i],
+            b=names[j],
             d_prime=float(middle[i, j]),
             confused_probability=float(0.5 * (pooled[i, j] + pooled[j, i])),
             places=(i, j),
             compared=compared,
         )
-        for i, j in combinations(range(len(icons)), 2)
+        for i, j in combinations(range(len(names)), 2)
     ]
-    of_icon: dict[str, list[PairScore]] = {icon.name: [] for icon in icons}
+    of_icon: dict[str, list[PairScore]] = {name: [] for name in names}
     for pair in pairs:
         of_icon[pair.a].append(pair)
         of_icon[pair.b].append(pair)
     scored = []
-    for k, (icon, trace, lasting, percept) in enumerate(zip(icons, traces, durations_s, percepts, strict=True)):
-        safety = judge_safety(trace)
+    for k, (name, lasting) in enumerate(zip(names, durations_s, strict=True)):
+        played = tracks.of_icon(k)
+        own = [traces[place] for _, place in played]
+        most = max((place for _, place in played), key=lambda place: percepts[place].detected_probability)
+        safety = [judge_safety(trace) for trace in own]
+        objections = [
+            (", ".join(elements), why)
+            for (elements, _), verdict, trace in zip(played, safety, own, strict=True)
+            for why in (verdict.reason, trace.reason)
+            if why
+        ]
+        cold, warm = (max(own, key=lambda trace: abs(peak_change_K(trace, channel))) for channel in CHANNELS)
         scored.append(
             IconScore(
-                name=icon.name,
+                name=name,
                 detected_probability=float(detected[k]),
                 onset_s=None if math.isnan(onsets[k]) else float(onsets[k]),
                 channel=channel_name(int(channels[k])),
-                peak_change_K=(peak_change_K(trace, "cold"), peak_change_K(trace, "warm")),
-                attack_K_per_s=(attack_K_per_s(trace, "cold"), attack_K_per_s(trace, "warm")),
-                delay_s=(delay_s(trace, "cold"), delay_s(trace, "warm")),
+                peak_change_K=(peak_change_K(cold, "cold"), peak_change_K(warm, "warm")),
+                attack_K_per_s=(attack_K_per_s(cold, "cold"), attack_K_per_s(warm, "warm")),
+                delay_s=(delay_s(cold, "cold"), delay_s(warm, "warm")),
                 proportion_correct=float(pooled[k, k]),
                 felt_and_named=float(alert[k]),
-                reachable=bool(trace.reachable),
-                safe=safety.safe,
-                reason="; ".join(filter(None, (safety.reason, trace.reason))) or None,
-                cautions=safety.cautions,
-                rules=icon_rules(trace, percept),
-                outside_data=outside_data(trace),
+                reachable=all(trace.reachable for trace in own),
+                safe=all(verdict.safe for verdict in safety),
+                reason="; ".join(f"on {where}: {why}" if where else why for where, why in objections) or None,
+                cautions=tuple(dict.fromkeys(caution for verdict in safety for caution in verdict.cautions)),
+                rules=icon_rules(traces[most], percepts[most]),
+                outside_data=tuple(dict.fromkeys(said for trace in own for said in outside_data(trace))),
                 duration_s=lasting,
-                energy_J=energy_J(trace, lasting),
-                pairs=tuple(of_icon[icon.name]),
+                energy_J=math.fsum(energy_J(traces[place], lasting) for place in tracks.row(k)),
+                where=tuple(element for elements, _ in played for element in elements),
+                pairs=tuple(of_icon[name]),
             )
         )
     return tuple(scored), tuple(pairs)

@@ -18,6 +18,7 @@ from thermicon.base.checks.arguments import checked
 from ..identification.carry_over import CarryOver, task_among
 from ..identification.new_laboratory import DRAWS, NewLaboratory, Nominal, new_laboratory
 from ..identification.population import RATE_HZ
+from ..identification.tracks import Tracks
 from ..kernels.parallel import Progress, step_counter
 from ..observer.observer_model import ObserverModel
 from ..ranking.batches import FeltResult, Job
@@ -262,7 +263,7 @@ class Chooser:
                 own.proportion_correct, own.information_bits, felt.detected[chosen], middle, onset_s, named, alert
             )
             found = new_laboratory(
-                icons, job.rig, job.end_s, self.people, alone, job.memory,
+                Tracks.of(icons, job.layout), job.end_s, self.people, alone, job.memory,
                 tracking=job.tracking, model=self.model, draws=draws, seed=job.seed, task=task, step=step,
             )  # fmt: skip
         return Choice(

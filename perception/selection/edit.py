@@ -174,7 +174,8 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
         parted, harmed = _with_people(ranking, screening, one, crowd, end_s)
         if parted >= wanted and not harmed and parse(str(one.icon))[one.icon.name].statements == one.icon.statements:
             # In batches, as the set itself was ranked: of many icons and people at once there is no room.
-            few = replace(job, icons=tuple(_edited(ranking, one)), end_s=end_s, people=min(job.people, MOST_RECOUNTED))
+            people = min(job.people, MOST_RECOUNTED)
+            few = replace(job, members=tuple(_edited(ranking, one)), end_s=end_s, people=people)
             new = collect_batches(few, 1, lambda: None).felt_and_named
             gain = float(new.mean() - ranking.felt.felt_and_named[: few.people].mean())
             if gain <= ROUNDING:
@@ -203,7 +204,7 @@ def _with_people(
     job, before, nominal = ranking.job, ranking.d_prime, ranking.model.nominal
 
     def medians(icons: Sequence[Icon], task: Task) -> Array:
-        batches, found = replace(job, icons=tuple(icons), end_s=end_s), []
+        batches, found = replace(job, members=tuple(icons), end_s=end_s), []
         for number in range(batches.batches):
             some = crowd.part(*batches.span(number))
             felt, _ = population_response(icons, job.rig, some, job.tracking, end_s=end_s, observer=nominal)

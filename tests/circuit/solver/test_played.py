@@ -79,10 +79,13 @@ def test_what_one_element_misses_the_whole_misses() -> None:
 @pytest.mark.parametrize(
     ("on", "told"),
     [
-        ("thenar", "and a rig has one element: name a layout, such as wheel"),
-        (None, "for the elements left, right, and a rig has one element"),
-        ("ring-four", "the layout ring-four has top, outer-side, palm-side, thumb-side: name a layout that has them"),
-        (Rig.load("forearm"), "a rig has one element"),
+        ("thenar", "and the rig thenar is one element: give a layout that has them, such as wheel"),
+        (None, "play on left, right, and the rig thenar is one element"),
+        (
+            "ring-four",
+            "ring-four has top, outer-side, palm-side, thumb-side: give a layout that has them, such as wheel",
+        ),
+        (Rig.load("forearm"), "the rig forearm is one element"),
     ],
 )
 def test_a_layout_without_the_elements_of_a_set_is_refused(on: str | Rig | None, told: str) -> None:

@@ -96,7 +96,7 @@ def test_a_set_on_several_elements_is_checked_and_refused_by_what_plays_one(cli:
     assert cli.good("check", converted).stdout.partition(":")[2] == said.stdout.partition(":")[2]
     for command in (
         *(
-            ["rank"],
+            ["rank", "--doubt"],
             ["improve"],
             ["sweep", "--vary", "contact.area_cm2=1,4"],
             ["list", "--cite"],

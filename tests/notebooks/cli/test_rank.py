@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from importlib.resources import files
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -106,7 +107,9 @@ def test_rules_of_thumb_score_a_set_without_the_model(cli: Cli) -> None:
 def test_the_next_command_is_chosen_by_what_was_found(d_prime: float, said: str) -> None:
     pairs = (SimpleNamespace(d_prime=9.0), SimpleNamespace(d_prime=d_prime))
     icons = tuple(SimpleNamespace(name=name, safe=True, reachable=True) for name in "abc")
-    set_ = SimpleNamespace(pairs=pairs, icons=icons, felt=SimpleNamespace(detected=np.array([0.9, 0.8, 0.7])))
+    set_ = SimpleNamespace(
+        pairs=pairs, icons=icons, felt=SimpleNamespace(detected=np.array([0.9, 0.8, 0.7])), elements=()
+    )
     found: Any = SimpleNamespace(ranking=set_, goal=None, edits={})
     rig, crowd = RigOptions(set=["contact.area_cm2=9"]), CrowdOptions(people=7)
     assert after_ranking(found, commands(["my icons.cue"], rig, crowd)) == said
@@ -259,3 +262,50 @@ def test_the_table_of_doubt_says_what_to_measure_first(cli: Cli, two: Path, tmp_
     assert (units["contact resistance"], units["thickness of the outermost layer"]) == ("m²·K/W", "mm")
     assert "memory noise (episodes)" in units and "degC" not in words and "d'" not in words
     assert picture.stat().st_size > 10_000
+
+
+def test_a_set_on_two_sides_is_ranked_by_where_it_plays_and_says_what_is_not_in_it(cli: Cli, tmp_path: Path) -> None:
+    made, page = tmp_path / "made.json", tmp_path / "page.html"
+    few = ("--people", 8, "--intervals", 4)
+    said = cli.good("rank", "turns", "--rig", "wheel", *few, "--json", made, "--report", page).stdout
+    rows = {line.split()[0]: line for line in said.splitlines() if line.startswith(("leave-", "turn-"))}
+    assert "left, right" in rows["turn-left"]
+    assert rows["leave-right"].split()[1] == "right"
+    place = "place: the elements are apart, so nothing about place is assumed; what driving costs is not in it"
+    assert place in " ".join(said.split())
+    assert "Next" not in said
+    held = json.loads(made.read_text("utf-8"))
+    assert {icon["name"]: icon["where"] for icon in held["icons"]}["leave-left"] == ["left"]
+    assert [round(cost["published"], 3) for cost in held["place"]["costs"]] == [0.942, 0.917]
+    for cost in held["place"]["costs"]:
+        assert cost["predicted"] * (1 - cost["lapse"]) + cost["lapse"] / 2 == pytest.approx(cost["published"])
+        assert cost["proportion_correct"] < held["set"]["proportion_correct"]
+    whole = page.read_text("utf-8")
+    for shown in (place, "side recognised while driving: 94.2 %", "what elements do to one another", "left: mostly"):
+        assert shown in whole
+
+
+def test_a_lapse_of_the_layout_file_is_what_the_details_said(cli: Cli, tmp_path: Path) -> None:
+    wheel = (files("thermicon.circuit") / "layouts" / "wheel.toml").read_text("utf-8")
+    driving = tmp_path / "driving.toml"
+    driving.write_text(wheel.replace('surfaces = "apart"', 'surfaces = "apart"\nlapse = 0.5', 1))
+    said = cli.good("rank", "turns", "--rig", driving, "--people", 8, "--intervals", 0, "--json", "-")
+    held = json.loads(said.stdout)
+    assert held["set"]["proportion_correct"] == pytest.approx(0.5 * 0.95 + 0.5 / 4, abs=0.03)
+    assert held["place"]["costs"] == []
+    told = cli.good("rank", "turns", "--rig", driving, "--people", 2, "--intervals", 0).stdout
+    assert "a lapse of 50 % of trials, for what else people do, is in it" in " ".join(told.split())
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["turns"], "the rig thenar is one element: give a layout that has them, such as wheel"),
+        (["calls", "--rig", "wheel"], "wheel has left, right: give a layout that has them, such as ring-four"),
+        (["six-icons", "--rig", "wheel"], "a layout of several elements, and one plays here; give the rig of one"),
+        (["bars", "--rig", "tcs2-strips"], 'take elements that are apart (surfaces = "apart"), such as those of wheel'),
+        (["turns", "--rig", "wheel", "--set", "contact.area_cm2=4"], "write set = { … } into an element"),
+    ],
+)
+def test_icons_and_elements_that_do_not_go_together_say_which_is_which(cli: Cli, words: list[str], told: str) -> None:
+    assert told in " ".join(cli("rank", *words).stderr.split())

@@ -135,8 +135,8 @@ def test_several_elements_are_simulated_on_a_layout_with_a_row_for_each(cli: Cli
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        ([], "name a layout, such as wheel"),
-        (["--rig", "ring-four"], "name a layout that has them"),
+        ([], "give a layout that has them, such as wheel"),
+        (["--rig", "ring-four"], "give a layout that has them"),
         (["--rig", "wheel", "--film", "turn.svg"], "this set is for several; draw a --figure"),
         (["--rig", "wheel", "--icon", "trun"], "did you mean turn?"),
         (["--rig", "wheel", "--set", "contact.area_cm2=4"], "write set = { … } into an element of the layout file"),

@@ -87,7 +87,7 @@ def ranking(icons: IconSet, rig: Rig) -> Ranking:
 
 @pytest.fixture(scope="module")
 def made(ranking: Ranking, icons: IconSet, rig: Rig) -> str:
-    return report(SetReport(ranking, edits=cheapest_edits(ranking)), icons, rig, "thermicon rank a&b.cue")
+    return report(SetReport(ranking, edits=cheapest_edits(ranking)), icons, "thermicon rank a&b.cue")
 
 
 @pytest.mark.slow
@@ -132,14 +132,14 @@ def test_it_tells_what_the_ranking_found(made: str, ranking: Ranking, icons: Ico
 
 @pytest.mark.slow
 def test_it_is_the_same_every_time_without_a_date(made: str, ranking: Ranking, icons: IconSet, rig: Rig) -> None:
-    assert report(SetReport(ranking, edits=cheapest_edits(ranking)), icons, rig, "thermicon rank a&b.cue") == made
+    assert report(SetReport(ranking, edits=cheapest_edits(ranking)), icons, "thermicon rank a&b.cue") == made
     assert re.findall(r"20\d\d-\d\d-\d\d", read(made).text) == []
     assert len(made) < 1_500_000
 
 
 def test_one_icon_has_no_pairs(rig: Rig) -> None:
     icons = parse("cue 1\nicon only { warm by 2 °C at 1 °C/s; return at 1 °C/s }\n")
-    made = report(SetReport(rank(icons, rig, people=1, parameters=0)), icons, rig)
+    made = report(SetReport(rank(icons, rig, people=1, parameters=0)), icons)
     words = read(made).text
     assert "Predicted ranking of 1 icon by thermicon" in words
     for heading in ("Pairs", "Pictures of the set", "Worst pair"):
@@ -155,7 +155,7 @@ def test_what_is_unsafe_or_outside_the_data_is_warned_of(rig: Rig) -> None:
         "icon jolt { to 1.6 A at 0.4 A/s; to 0.1 A at 0.4 A/s }\n"
     )
     ranking = rank(icons, rig, people=2, parameters=0)
-    made = report(SetReport(ranking), icons, rig, cures={"jolt": "it would be with less"})
+    made = report(SetReport(ranking), icons, cures={"jolt": "it would be with less"})
     assert '<p class="warn">* burn is NOT SAFE and not reached: ' in made
     assert "; it would be with less</p>" in made
     assert '<p class="note">Outside the data: burn: ' in made

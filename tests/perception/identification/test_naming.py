@@ -9,6 +9,7 @@ import pytest
 from thermicon.perception import Observer
 from thermicon.perception.identification.confusion import name_directly
 from thermicon.perception.identification.episodes import Episodes, episode_distances
+from thermicon.perception.identification.surfaces import name_apart
 from thermicon.perception.observer.constants import Both
 
 DT = 0.01
@@ -43,6 +44,21 @@ def test_the_icon_before_blurs_every_feature(observer: Observer, differs: str, l
     noise = np.random.default_rng(0).normal(0.0, louder * observer.timing_noise, (100_000, *one.shape))
     off, less = (np.square(one + noise - icon).sum(axis=(1, 2)) for icon in (one, other))
     wrong = float((less < off).mean())
+    assert 0.02 < wrong < 0.45
+    assert [named[0, 1], named[1, 0]] == pytest.approx([wrong, wrong], abs=0.02)
+
+
+def test_costs_of_a_name_add_over_surfaces(observer: Observer) -> None:
+    cold = np.stack([USUAL, OTHERS["pause"], OTHERS["length"]])[None]
+    felt = Episodes.of(cold, np.zeros_like(cold), DT, observer)
+    played, person = np.array([[0, 1], [0, 2]]), np.ones(1)
+    named = name_apart(felt, played, observer, memory=person, lapse=0.0, seed=1, samples=8000).probability[0]
+    costs = np.zeros((2, 100_000))
+    for seed, (own, other) in enumerate(played):
+        one, two = remembered(felt, own), remembered(felt, other)
+        noise = np.random.default_rng(seed).normal(0.0, observer.timing_noise, (100_000, *one.shape))
+        costs += [np.square(one + noise - icon).sum(axis=(1, 2)) for icon in (one, two)]
+    wrong = float((costs[1] < costs[0]).mean())
     assert 0.02 < wrong < 0.45
     assert [named[0, 1], named[1, 0]] == pytest.approx([wrong, wrong], abs=0.02)
 

@@ -12,7 +12,7 @@ from thermicon.perception.identification.confusion import NAMED_SAMPLES as NAMED
 from thermicon.perception.identification.confusion import sampling_error
 from thermicon.perception.observer.channels import MEMORY_FORMS
 from thermicon.perception.plots.draw_heat import plot_distance
-from thermicon.perception.ranking import batches, scores
+from thermicon.perception.ranking import batches, by_element
 
 TOP = (
     "thermicon rig rig_changes rig_text observer warnings seed people tracking by memory content_hash sha256 task "
@@ -168,8 +168,8 @@ def test_what_rules_and_model_disagree_on_says_by_how_much() -> None:
 def test_nobody_waits_for_reasons_and_rules_of_pairs_that_nobody_reads(monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[str] = []
     for name in ("pair_reasons", "pair_rules", "components_of"):
-        each = getattr(scores, name)
-        monkeypatch.setattr(scores, name, lambda *given, name=name, each=each: made.append(name) or each(*given))
+        each = getattr(by_element, name)
+        monkeypatch.setattr(by_element, name, lambda *given, name=name, each=each: made.append(name) or each(*given))
     ranking = rank(steps(a=-3, b=-3.3, c=2), RIG, people=2, parameters=0)
     assert (repr(ranking)[:7], made) == ("Ranking", [])
     assert ranking.pairs[0].why
