@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Sequence
 from contextlib import suppress
@@ -136,6 +137,21 @@ class Layout:
             here = f"the layout {self.name or 'given'} has {', '.join(own)}" if any(own) else "a rig has one element"
             cure = "name a layout that has them" if any(own) else "name a layout, such as wheel, or your own file"
             raise RigError(f"the set is for the elements {', '.join(names)}, and {here}: {cure}")
+
+    @property
+    def document(self) -> str:
+        """The whole layout as JSON, for hashes and sidecars."""
+        own = ("name", "place_m", "sink", "gap_m")
+        told = {
+            **{key: getattr(self, key) for key in ("name", "title", "surfaces")},
+            "sink": [sink.model_dump() for sink in self.sinks],
+            "supply": self.supply and self.supply.model_dump(),
+            "element": [
+                {**{key: getattr(element, key) for key in own}, "rig": json.loads(element.rig.document)}
+                for element in self.elements
+            ],
+        }
+        return json.dumps(told, sort_keys=True, ensure_ascii=False)
 
     @property
     def alone(self) -> Rig:

@@ -172,7 +172,7 @@ class IconSet(Drawn):
         if self.spatial:
             raise SeveralElements(
                 f"{self.name or 'this set'} is for several elements ({', '.join(self.context.elements)}), which only "
-                'check, convert, simulate and pictures take yet; for one element, leave out "elements" and "on"'
+                'check, convert, simulate, export and pictures take yet; for one element, leave out "elements" and "on"'
             )
 
     @property

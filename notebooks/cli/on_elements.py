@@ -1,4 +1,4 @@
-"""``thermicon simulate`` on several elements: a run for each, on one clock."""
+"""Icons on several elements in commands."""
 
 from __future__ import annotations
 
@@ -11,15 +11,23 @@ from ..messages import note, usage
 from .options import RigOptions
 
 if TYPE_CHECKING:
-    from thermicon.circuit import LayoutTrace
-    from thermicon.icons import IconSet
+    from thermicon.circuit import Layout, LayoutTrace
+    from thermicon.icons import IconSet, SpatialIcon
 
 
 def simulate_elements(
     icons: IconSet, name: str | None, asked: RigOptions, file: str, rate_Hz: float, tail_s: float
 ) -> list[LayoutTrace]:
-    """The runs of icons on several elements (or of the one named) on a layout, after warnings of its rigs."""
-    from thermicon.circuit import Layout, simulate
+    """The runs of icons on several elements (or of the one named) on a layout."""
+    from thermicon.circuit import simulate
+
+    layout, chosen = elements_asked(icons, name, asked, file)
+    return [simulate(icon, layout, rate_Hz=rate_Hz, tail_s=tail_s) for icon in chosen]
+
+
+def elements_asked(icons: IconSet, name: str | None, asked: RigOptions, file: str) -> tuple[Layout, list[SpatialIcon]]:
+    """The layout, after warnings of it and of its rigs, and the icons of a set (or the one named)."""
+    from thermicon.circuit import Layout
 
     if asked.changes:
         help = "write set = { … } into an element of the layout file"
@@ -33,5 +41,4 @@ def simulate_elements(
         warn_of_rig(rig, named=True)
         for warning in site_warnings(file, icons, rig):
             note(f"warning: {warning}")
-    chosen = [icon for icon in icons.spatial if name in (None, icon.name)]
-    return [simulate(icon, layout, rate_Hz=rate_Hz, tail_s=tail_s) for icon in chosen]
+    return layout, [icon for icon in icons.spatial if name in (None, icon.name)]
