@@ -16,10 +16,12 @@ from thermicon.icons.model.iconset import Entry
 
 from ..rig.layout import AnyLayout, Layout
 from ..rig.rig import Rig
+from ..safety.whole import Whole, judge_whole
 from .device import Device
 from .export_folder import HOW, check_export_folder, publish
 from .formats import Format, load_format
 from .kept_verdicts import kept_or_judged
+from .loads import loads_of
 from .on_elements import Tracks, prepare_elements
 from .pack import pack
 from .prepare import Prepared, Refusal, prepare_set
@@ -76,6 +78,8 @@ class Export:
         Whether what may be forced is packed in spite of the reasons against it.
     layout
         The layout of the icons' elements; None for icons on one element.
+    whole
+        The verdict on all elements together; None for one element, and where an icon is not safe by itself.
 
     Examples
     --------
@@ -90,6 +94,7 @@ class Export:
     felt: tuple[Felt, ...] = ()
     force: bool = False
     layout: Layout | None = None
+    whole: Whole | None = None
 
     def __repr__(self) -> str:
         count = count_of(len(self.prepared), "icon")
@@ -123,7 +128,8 @@ class Export:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Warnings about the drives before they are played, each with the name of its icon."""
-        return tuple(f"{one.delivery.name}: {text}" for one in self.tracks for text in one.warnings)
+        together = [] if self.whole is None else [f"all elements together: {text}" for text in self.whole.cautions]
+        return (*together, *(f"{one.delivery.name}: {text}" for one in self.tracks for text in one.warnings))
 
     @property
     def refused(self) -> tuple[tuple[str, Refusal], ...]:
@@ -132,6 +138,8 @@ class Export:
         Losses of perception are listed only without other reasons, from which they would follow.
         """
         found, losses = [], self._losses
+        if self.whole is not None and self.whole.colour == "red":
+            found.append(("all elements together", Refusal("unsafe", f"{self.whole.reason}; {self.whole.cure}")))
         for one in self.tracks:
             name, causes = one.delivery.name, one.refusals
             if (felt := losses.get(name, ())) and not causes:
@@ -153,7 +161,7 @@ class Export:
         if self.layout is not None:
             from .pack_elements import pack_elements
 
-            return pack_elements([channel.prepared for channel in self.channels], self.form, self.layout, {})
+            return pack_elements([channel.prepared for channel in self.channels], self.form, self.layout, self.whole)
         return pack(
             self.prepared, self.form, felt={each.icon: each.to_dict() for each in self.felt}, losses=self._losses
         )
@@ -262,7 +270,9 @@ def export(
                 ExportChannel(element.rig, played, each, element.name)
                 for element, each in zip(layout.elements, ready, strict=True)
             ]
-            found = Export(tuple(channels), form, (), force, layout)
+            safe = all(one.verdict.colour != "red" for own in ready for one in own)
+            whole = judge_whole(layout, loads_of(ready)) if safe else None
+            found = Export(tuple(channels), form, (), force, layout, whole)
         else:
             prepared = prepare_set(chosen, on, played, form, judge=judge, tail_s=tail_s, pause_s=pause_s, step=step)
             channel = ExportChannel(on, played, prepared)

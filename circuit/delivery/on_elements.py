@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 from thermicon.icons import Icon, SpatialIcon
 from thermicon.icons.model.statements import Rest, Statement
 
-from ..rig.layout import Element, Layout
+from ..rig.layout import Layout
 from ..rig.rig import Rig
 from ..safety.repeated import check_pause
 from ..solver.simulate import duration_s
@@ -16,6 +16,7 @@ from .delivered_drive import DeliveredDrive
 from .device import Device
 from .formats import Format
 from .prepare import Judge, Prepared, judged_set
+from .sinks import judged_rigs
 from .ways import deliver, worst_cases
 
 Course = tuple[tuple[Statement, ...], float]
@@ -61,10 +62,14 @@ def prepare_elements(
     """
     check_pause(pause_s)
     form.check(device)
-    delivered = _delivered(tracks, device, step)
+    rigs = judged_rigs(tracks.layout, tracks.distinct.values(), device)
+    delivered = _delivered(tracks, rigs.values(), device, step)
     played = {
-        element: [_of_element(tracks, icon, element, delivered) for icon in tracks.icons]
-        for element in tracks.layout.elements
+        name: [
+            replace(delivered[rig, tracks.course(icon, name)], icon=tracks.of(icon, name), element=name)
+            for icon in tracks.icons
+        ]
+        for name, rig in rigs.items()
     }
     for together in zip(*played.values(), strict=True):  # refused before the gate, which takes longer
         if form.together is not None:
@@ -72,38 +77,30 @@ def prepare_elements(
         for one in together if form.together is None else ():
             form.write(one)
     known: dict[tuple[Rig, Course], Prepared] = {}
-    for rig in dict.fromkeys(element.rig for element in tracks.layout.elements):
+    for rig in dict.fromkeys(rigs.values()):
         courses = [course for own, course in delivered if own == rig]
         drives = [delivered[rig, course] for course in courses]
         ready = judged_set(drives, judge(drives, pause_s))
         known |= {(rig, course): one for course, one in zip(courses, ready, strict=True)}
     return tuple(
         tuple(
-            replace(known[element.rig, tracks.course(icon, element.name)], delivery=one)
+            replace(known[rigs[name], tracks.course(icon, name)], delivery=one)
             for icon, one in zip(tracks.icons, drives, strict=True)
         )
-        for element, drives in played.items()
+        for name, drives in played.items()
     )
 
 
 def _delivered(
-    tracks: Tracks, device: Device, step: Callable[[int, int], None] | None
+    tracks: Tracks, rigs: Iterable[Rig], device: Device, step: Callable[[int, int], None] | None
 ) -> dict[tuple[Rig, Course], DeliveredDrive]:
     """Every distinct track on every distinct rig of a layout as delivered."""
     delivered: dict[tuple[Rig, Course], DeliveredDrive] = {}
-    rigs, distinct = dict.fromkeys(element.rig for element in tracks.layout.elements), tracks.distinct
-    for rig in rigs:
+    each, distinct = tuple(dict.fromkeys(rigs)), tracks.distinct
+    for rig in each:
         for course, track in distinct.items():
             tail_s = max(0.0, course[1] - duration_s(track, rig))
             delivered[rig, course] = deliver(track, rig, device, tail_s=tail_s)
             if step is not None:
-                step(len(delivered), len(rigs) * len(distinct))
+                step(len(delivered), len(each) * len(distinct))
     return delivered
-
-
-def _of_element(
-    tracks: Tracks, icon: SpatialIcon, element: Element, delivered: Mapping[tuple[Rig, Course], DeliveredDrive]
-) -> DeliveredDrive:
-    """What one element plays of an icon, under their names."""
-    one = delivered[element.rig, tracks.course(icon, element.name)]
-    return replace(one, icon=tracks.of(icon, element.name), element=element.name)

@@ -7,6 +7,7 @@ from typing import Any
 
 from ..rig.layout import Layout
 from ..safety.demands import Demands
+from ..safety.whole import Whole
 from .formats import Format
 from .formats.form import OneFile
 from .pack import check_names, digest, sealed, sidecar, sidecar_name, sidecar_text, written
@@ -20,16 +21,16 @@ OF_ELEMENT = (
 
 
 def pack_elements(
-    channels: Sequence[Sequence[Prepared]], form: Format, layout: Layout, whole: Mapping[str, object]
+    channels: Sequence[Sequence[Prepared]], form: Format, layout: Layout, whole: Whole | None
 ) -> dict[str, bytes]:
     """Return the files of icons on several elements: one drive for all where the format holds them, else one for each.
 
-    `channels` are what each element plays of each icon, `whole` is what is known of all elements together.
+    `channels` are what each element plays of each icon, `whole` is the verdict on all elements together.
     """
     document = json.loads(layout.document)
     about = {
         "clock": "one",
-        **whole,
+        **({} if whole is None else whole.to_dict()),
         "layout_sha256": digest(layout.document.encode("utf-8")),
         "layout": {"name": layout.name, "document": document},
     }

@@ -22,7 +22,7 @@ from ..messages import BAD_INPUT, OPTIONS, REFUSED, MissingArgument, note, progr
 from ..report.blocks import grid
 from ..report.gate_words import CAUTION, gate_words, spread_text, steps_of, warning_lines
 from ..report.terminal import show
-from .on_elements import elements_asked
+from .on_elements import elements_asked, together_line
 from .options import IconName, NoFile, RigOptions, Tail, flag, opt, out, pick, read_set
 
 if TYPE_CHECKING:
@@ -119,6 +119,10 @@ def export_command(
         note("nothing was written", always=True)
         raise typer.Exit(REFUSED)
     report_icons(ready.tracks)
+    if ready.whole is not None:
+        note(together_line(ready.whole))
+        for caution in ready.whole.cautions:
+            note(f"warning: all elements together: {caution}")
     before = ready.write(folder, force, REPLACED)
     count = sum(name.endswith(".json") for name in ready.files)
     drives = "1 drive with its sidecar" if count == 1 else f"{count} drives with their sidecars"

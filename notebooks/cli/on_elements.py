@@ -12,6 +12,7 @@ from .options import RigOptions
 
 if TYPE_CHECKING:
     from thermicon.circuit import Layout, LayoutTrace
+    from thermicon.circuit.safety.whole import Whole
     from thermicon.icons import IconSet, SpatialIcon
 
 
@@ -42,3 +43,14 @@ def elements_asked(icons: IconSet, name: str | None, asked: RigOptions, file: st
         for warning in site_warnings(file, icons, rig):
             note(f"warning: {warning}")
     return layout, [icon for icon in icons.spatial if name in (None, icon.name)]
+
+
+def together_line(whole: Whole) -> str:
+    """What all elements do together beside its limits, and whether that needs one clock."""
+    sums = [
+        f"{check.quantity} {check.figures[0]} {check.unit} of {check.figures[1]}"
+        for check in whole.checks
+        if check.severity == "hard"
+    ]
+    clock = "whatever their clocks do" if whole.offset_s is None else f"with clocks {whole.offset_s:g} s apart at most"
+    return f"all elements together: {', '.join([whole.colour, *sums])}, {clock}"
