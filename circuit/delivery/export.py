@@ -1,10 +1,12 @@
 """Export in one call: files that play the icons or the reasons for refusing them."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from thermicon.base.checks.arguments import checked
 from thermicon.base.files.atomic import OutputError
@@ -16,16 +18,16 @@ from thermicon.icons.model.iconset import Entry
 
 from ..rig.layout import AnyLayout, Layout
 from ..rig.rig import Rig
-from ..safety.whole import Whole, judge_whole
 from .device import Device
 from .export_folder import HOW, check_export_folder, publish
 from .formats import Format, load_format
 from .kept_verdicts import kept_or_judged
-from .loads import loads_of
-from .on_elements import Tracks, prepare_elements
 from .pack import pack
 from .prepare import Prepared, Refusal, prepare_set
 from .ways import worst_cases
+
+if TYPE_CHECKING:
+    from ..safety.whole import Whole
 
 CURE = "give a new or empty folder, or use the command thermicon export, which replaces an earlier export"
 
@@ -262,17 +264,16 @@ def export(
             check_export_folder(where, how=CURE)
         judge = worst_cases if force else kept_or_judged
         if several:
-            if not force:
-                judge = partial(kept_or_judged, about=layout.document)
+            from .on_elements import Tracks, judged_together, prepare_elements  # not needed for one element
+
+            about = judge if force else partial(kept_or_judged, about=layout.document)
             tracks = Tracks(layout, several, tail_s)
-            ready = prepare_elements(tracks, played, form, judge=judge, pause_s=pause_s, step=step)
+            ready = prepare_elements(tracks, played, form, judge=about, pause_s=pause_s, step=step)
             channels = [
                 ExportChannel(element.rig, played, each, element.name)
                 for element, each in zip(layout.elements, ready, strict=True)
             ]
-            safe = all(one.verdict.colour != "red" for own in ready for one in own)
-            whole = judge_whole(layout, loads_of(ready)) if safe else None
-            found = Export(tuple(channels), form, (), force, layout, whole)
+            found = Export(tuple(channels), form, (), force, layout, judged_together(layout, ready))
         else:
             prepared = prepare_set(chosen, on, played, form, judge=judge, tail_s=tail_s, pause_s=pause_s, step=step)
             channel = ExportChannel(on, played, prepared)

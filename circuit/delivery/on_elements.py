@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from thermicon.icons import Icon, SpatialIcon
@@ -11,10 +11,12 @@ from thermicon.icons.model.statements import Rest, Statement
 from ..rig.layout import Layout
 from ..rig.rig import Rig
 from ..safety.repeated import check_pause
+from ..safety.whole import Whole, judge_whole
 from ..solver.simulate import duration_s
 from .delivered_drive import DeliveredDrive
 from .device import Device
-from .formats import Format
+from .formats import Format, FormatError
+from .loads import loads_of
 from .prepare import Judge, Prepared, judged_set
 from .sinks import judged_rigs
 from .ways import deliver, worst_cases
@@ -62,6 +64,11 @@ def prepare_elements(
     """
     check_pause(pause_s)
     form.check(device)
+    if form.together is None and form.player is not None:
+        raise FormatError(
+            f"{form.name}: its player plays one element, and one cut-off must stop them all; use csv, tdms, "
+            "setpoint-csv or tcs2-serial"
+        )
     rigs = judged_rigs(tracks.layout, tracks.distinct.values(), device)
     delivered = _delivered(tracks, rigs.values(), device, step)
     played = {
@@ -89,6 +96,13 @@ def prepare_elements(
         )
         for name, drives in played.items()
     )
+
+
+def judged_together(layout: Layout, ready: Sequence[Sequence[Prepared]]) -> Whole | None:
+    """The verdict on all elements together; None where an icon is not safe by itself."""
+    if any(one.verdict.colour == "red" for own in ready for one in own):
+        return None
+    return judge_whole(layout, loads_of(ready))
 
 
 def _delivered(

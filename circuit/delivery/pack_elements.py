@@ -55,10 +55,9 @@ def _own(one: Prepared) -> Prepared:
 
 
 def _alone(one: Prepared, form: Format, about: Mapping[str, object]) -> dict[str, bytes]:
-    """Drive and sidecar of one element; no player holds several, so that a person states how each demand is met."""
+    """Drive and sidecar of one element."""
     drive = written(one, form)
     told = {**sidecar(one, form, None, _over([one]), drive, {}), **about}
-    told["format"] |= {"demands_met": dict.fromkeys(one.verdict.demands.demanded, "stated")}
     name = one.delivery.icon.name
     return {sidecar_name(name, form): sidecar_text(sealed(told)), form.file_name(one.delivery): drive}
 
