@@ -10,14 +10,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
+
 from thermicon.base.checks.arguments import checked
 from thermicon.base.files.inputs import named_text, shipped_names
 from thermicon.base.words.clean_text import name_fault
 
+from .faults import unusual
 from .layoutfile import LayoutTable, Sink, Supply, read_layout_table
 from .rig import AnyRig, Rig, rig_names
 from .rigfile import RigError, parse_toml
+from .usual import unusual_values
 
+NEIGHBOURS = ((0.0, 0.022, 0.14), (0.5, 0.011, 0.07), (1.0, 0.006, 0.04), (2.0, 0.0014, 0.009))
+"""Bare skin in mm between two elements, and by how much 1 K of one changes the other, in the mean and in its nearest
+millimetre: solution in two dimensions of skin under elements 7.4 mm wide, after 10 s, by this project."""
 _ELEMENTS = re.compile(rb"(?m)^\s*(\[\[\s*element\s*\]\]|element\s*=)")
 
 
@@ -137,6 +144,23 @@ class Layout:
             here = f"the layout {self.name or 'given'} has {', '.join(own)}" if any(own) else "a rig has one element"
             cure = "name a layout that has them" if any(own) else "name a layout, such as wheel, or your own file"
             raise RigError(f"the set is for the elements {', '.join(names)}, and {here}: {cure}")
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences on what is unusual about gaps, sinks and the supply; rigs have warnings of their own."""
+        told = {
+            "element": [{"gap_mm": 1e3 * gap} for gap in dict.fromkeys(one.gap_m for one in self.elements) if gap],
+            "sink": [sink.model_dump() for sink in self.sinks],
+            "supply": {} if self.supply is None else self.supply.model_dump(),
+        }
+        close = []
+        for gap in dict.fromkeys(one.gap_m for one in self.elements):
+            if gap is not None and 1e3 * gap < NEIGHBOURS[-1][0]:
+                at_mm, mean, near = zip(*NEIGHBOURS, strict=True)
+                by = {"mean": np.interp(1e3 * gap, at_mm, mean), "near": np.interp(1e3 * gap, at_mm, near)}
+                names = ", ".join(one.name for one in self.elements if one.gap_m == gap)
+                close.append(unusual("close", names=names, gap=1e3 * gap, **by))
+        return tuple(each.text for each in (*close, *unusual_values(told, "layout")))
 
     @property
     def document(self) -> str:

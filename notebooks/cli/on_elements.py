@@ -38,6 +38,8 @@ def elements_asked(icons: IconSet, name: str | None, asked: RigOptions, file: st
         raise usage(f"no icon is called {name!r}; {did_you_mean(name, names)}", "--icon")
     layout = Layout.of(asked.rig, icons.context.site)
     layout.check_elements(icons.context.elements)
+    for warning in layout.warnings:
+        note(f"warning: {warning}")
     for rig in dict.fromkeys(element.rig for element in layout.elements):
         warn_of_rig(rig, named=True)
         for warning in site_warnings(file, icons, rig):
