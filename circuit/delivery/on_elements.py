@@ -10,6 +10,8 @@ from thermicon.icons.model.statements import Rest, Statement
 
 from ..rig.layout import Layout
 from ..rig.rig import Rig
+from ..safety.demands import Demands
+from ..safety.gate import Gate
 from ..safety.repeated import check_pause
 from ..safety.whole import Whole, judge_whole
 from ..solver.simulate import duration_s
@@ -87,7 +89,7 @@ def prepare_elements(
     for rig in dict.fromkeys(rigs.values()):
         courses = [course for own, course in delivered if own == rig]
         drives = [delivered[rig, course] for course in courses]
-        ready = judged_set(drives, judge(drives, pause_s))
+        ready = judged_set(drives, _strictest(judge(drives, pause_s)))
         known |= {(rig, course): one for course, one in zip(courses, ready, strict=True)}
     return tuple(
         tuple(
@@ -96,6 +98,17 @@ def prepare_elements(
         )
         for name, drives in played.items()
     )
+
+
+def _strictest(verdicts: Sequence[Gate]) -> Sequence[Gate]:
+    """Verdicts on one rig, each with the demands of all: what keeps a track safe must be there if it is exchanged."""
+    strict = Demands.strictest([verdict.demands for verdict in verdicts])
+    return [
+        replace(verdict, demands=replace(strict, faults=verdict.demands.faults))
+        if isinstance(verdict, Gate) and verdict.safe
+        else verdict
+        for verdict in verdicts
+    ]
 
 
 def judged_together(layout: Layout, ready: Sequence[Sequence[Prepared]]) -> Whole | None:

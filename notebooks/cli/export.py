@@ -131,7 +131,8 @@ def export_command(
         note(f"the folder as it was before is {before}")
     note(f"to play: {form.how}")
     note(CAUTION)
-    note("Next: test it with people; thermicon list --copy study study.toml writes a study to start from")
+    if not whole.spatial:
+        note("Next: test it with people; thermicon list --copy study study.toml writes a study to start from")
 
 
 def report_icons(ready: Sequence[Prepared]) -> None:
