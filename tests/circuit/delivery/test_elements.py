@@ -3,6 +3,8 @@
 import csv
 import io
 import json
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,9 +12,13 @@ import pytest
 from tests.circuit.verdicts import GreenVerdict
 from thermicon.circuit import Element, InputError, Layout, Rig, export
 from thermicon.circuit.delivery import export as exporting
+from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.export_folder import claims_of
 from thermicon.circuit.delivery.pack import sealed, sidecar_text
 from thermicon.circuit.delivery.verify import verify
+from thermicon.circuit.delivery.ways import worst_cases
+from thermicon.circuit.safety.demands import Demands
+from thermicon.circuit.safety.gate import Gate
 from thermicon.icons import IconSet, parse
 
 DIP = "cool by 4 °C at 2 °C/s; return at 2 °C/s"
@@ -125,3 +131,63 @@ def test_a_red_track_is_refused_by_the_name_of_its_element() -> None:
     made = export(spatial(f"together {{ on left {{ {hot} }}; on right {{ {DIP} }} }}"), "wheel")
     assert not made.files
     assert {name for name, refusal in made.refused if refusal.kind == "unsafe"} == {"x0 on left"}
+
+
+@pytest.mark.usefixtures("green")
+def test_zones_of_a_thermode_play_their_own_courses_and_those_that_play_alike_one() -> None:
+    body = f"together {{ on s2..s4 {{ {DIP} }}; along s5, s1 every 500 ms {{ {GLOW} }} }}"
+    made = export(spatial(body, elements="s1, s2, s3, s4, s5"), "tcs2-strips", None, "tcs2-serial")
+    neutral, _, *profiles, zones, start = made.files["x0.tcs2.txt"].decode().split()
+    assert (neutral, zones, start) == ("N320", "Ue11111", "L")
+    by_mask = {line[2:7]: line[7:] for line in profiles}
+    assert set(by_mask) == {"01110", "00001", "10000"}
+    (icon,) = spatial(body, elements="s1, s2, s3, s4, s5").spatial
+    for zone, mask in (("s1", "10000"), ("s3", "01110"), ("s5", "00001")):
+        track = icon.tracks[zone]
+        rig, tail_s = Layout.load("tcs2-strips").elements[0].rig, icon.duration_s - track.corners().duration_s
+        alone = export(track, rig, None, "tcs2-serial", tail_s=tail_s).files["x0.tcs2.txt"].decode().split()
+        assert alone[2] == f"Uw11111{by_mask[mask]}"
+    told = json.loads(made.files["x0.json"])
+    assert [each["channel"] for each in told["elements"]] == ["10000", "01000", "00100", "00010", "00001"]
+    six = Layout(tuple(Element(Rig.load("tcs2"), name, (at, 0.0)) for at, name in enumerate("abcdef")), "six")
+    with pytest.raises(InputError, match="a TCS II has 5 zones, and the layout 6 elements; give a layout of at most 5"):
+        export(spatial(f"on all {{ {DIP} }}", elements="a, f"), six, None, "tcs2-serial")
+
+
+@pytest.mark.usefixtures("green")
+def test_waveforms_have_a_channel_or_a_file_for_each_element_and_one_player_is_refused() -> None:
+    from nptdms import TdmsFile
+
+    icons = spatial(LEFT_OF_TWO)
+    group = TdmsFile.read(io.BytesIO(export(icons, "wheel", None, "tdms").files["x0.tdms"]))["thermicon"]
+    both = table(export(icons, "wheel", "ni-analogue-output").files["x0.csv"])
+    for element in ("left", "right"):
+        name = f"{element}_command_V"
+        assert group[name][:].tolist() == [float(cell) for cell in both[name]]
+    made = export(icons, "wheel", None, "wav")
+    assert set(made.files) == {f"x0-{element}.{end}" for element in ("left", "right") for end in ("wav", "json")}
+    told = json.loads(made.files["x0-right.json"])
+    assert (told["element"], told["elements"], told["clock"]) == ("right", ["left", "right"], "one")
+    assert verify(made.files).well
+    for form in ("c-array", "psychopy"):
+        with pytest.raises(
+            InputError, match=r"its player plays one element, .* use csv, tdms, setpoint-csv or tcs2-serial$"
+        ):
+            export(icons, "wheel", None, form)
+
+
+def test_a_verdict_is_kept_by_the_layout_and_an_exchanged_channel_has_its_demands(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[str] = []
+
+    def judge(deliveries: list[DeliveredDrive], pause_s: float | None, about: str = "") -> Sequence[Gate]:
+        asked.append(about)
+        return worst_cases(deliveries, pause_s)
+
+    monkeypatch.setattr(exporting, "kept_or_judged", judge)
+    made = export(spatial(LEFT_OF_TWO), "wheel")
+    export(parse(f"cue 1; icon a {{ {DIP} }}"), "thenar")
+    assert asked == [Layout.load("wheel").document, ""]
+    demands = [replace(one.verdict.demands, faults=()) for one in made.tracks]
+    assert demands[0] == demands[1] == Demands.strictest([one.verdict.demands for one in made.tracks])
