@@ -114,11 +114,18 @@ def _table() -> RecordTable:
     return shipped_records("whole-limits.toml", "severity", "cold_C")
 
 
-def _late(values: Array, offset_s: float) -> Array:
-    """The greatest of values (rows,) that are late by up to an offset; before the first row they are as in it."""
-    count = min(round(offset_s / STEP_S), len(values))
-    windows = np.lib.stride_tricks.sliding_window_view(np.pad(values, (count, 0), mode="edge"), count + 1)
-    return np.asarray(windows.max(axis=-1))
+def _late(icons: Icons, what: str, offset_s: float) -> Iterator[list[Array]]:
+    """In each icon the greatest of each element (rows,) that is late by up to an offset.
+
+    Before its first row it may still be in the end of any icon, since a pause may be shorter than the offset.
+    """
+    count = round(offset_s / STEP_S)
+    courses = [[getattr(load, what) for load in icon] for icon in icons]
+    padded = [[np.pad(each, (count, 0), mode="edge")[-count:] for each in icon] for icon in courses]
+    ends = [np.max(each, axis=0) for each in zip(*padded, strict=True)]
+    for icon in courses:
+        longer = [np.concatenate(both) for both in zip(ends, icon, strict=True)]
+        yield [np.lib.stride_tricks.sliding_window_view(each, count + 1).max(axis=-1) for each in longer]
 
 
 def _judged(bound: Bound, any_clock: float, courses: Callable[[float], Iterable[Array]]) -> tuple[Check, float | None]:
@@ -152,8 +159,7 @@ def _supply(layout: Layout, icons: Icons) -> Iterator[tuple[Check, float | None]
     for what, bound in _supplied(layout):
 
         def sums(offset_s: float, what: str = what) -> Iterator[Array]:
-            for icon in icons:
-                yield np.sum([_late(getattr(load, what), offset_s) for load in icon], axis=0)
+            return (np.sum(icon, axis=0) for icon in _late(icons, what, offset_s))
 
         yield _judged(bound, sum(_most(icons, what)), sums)
 
@@ -194,8 +200,8 @@ def _opposite(layout: Layout, icons: Icons) -> Iterator[tuple[Check, float | Non
             continue
 
         def courses(offset_s: float, rule: Callable[[Array, Array], Array] = rule) -> Iterator[Array]:
-            for icon, (a, b) in itertools.product(icons, pairs):
-                yield rule(_late(icon[a].warm_C, offset_s), -_late(icon[b].chill_C, offset_s))
+            both = zip(_late(icons, "warm_C", offset_s), _late(icons, "chill_C", offset_s), strict=True)
+            return (rule(warm[a], -chill[b]) for warm, chill in both for a, b in pairs)
 
         check, offset_s = _judged(_bound(record), most, courses)
         yield check, offset_s if check.severity == "hard" else None

@@ -98,7 +98,8 @@ def sums(takes: Drawn, late: int = 0) -> tuple[float, float]:
     """The most amperes and watts of both elements together in any icon, with the second late by so many rows."""
     most = [0.0, 0.0]
     for left, right in zip(*takes.values(), strict=True):
-        for place, (first, second) in enumerate(zip(left, right, strict=True)):
+        for place, both in enumerate(zip(left, right, strict=True)):
+            first, second = (np.tile(course, 2) for course in both)  # two plays without a pause
             begun, length = max(0, -late), len(first) + abs(late)
             shifted = [
                 np.pad(course, (before, length - len(course) - before), mode="edge")

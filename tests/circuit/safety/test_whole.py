@@ -117,3 +117,10 @@ def test_a_display_stuck_warm_beside_a_cold_one_is_told(cut_C: float, colour: st
     icons = [[replace(IDLE, cut_C=(31.0, cut_C)), cold(0, 100, 20.0)]]
     assert judge_whole(layout(), icons).colour == colour
     assert judge_whole(layout("apart"), icons).colour == "green"
+
+
+def test_a_channel_that_is_late_in_one_icon_meets_the_next() -> None:
+    supplied = layout(supply=Supply(current_limit_A=3.0, power_limit_W=99))
+    icons = [[drawing(0, 50, 0.1), drawing(ROWS - 40, ROWS - 30, 2.0)], [drawing(0, 50, 2.0), IDLE]]
+    assert judge_whole(supplied, icons).offset_s == 0.2
+    assert judge_whole(supplied, icons[:1]).offset_s is None
