@@ -12,7 +12,7 @@ from thermicon.base.checks.arguments import checked
 from thermicon.base.files.atomic import OutputError
 from thermicon.base.files.inputs import InputError
 from thermicon.base.words.number_text import count_of
-from thermicon.icons import IconSet
+from thermicon.icons import IconSet, SpatialIcon
 from thermicon.icons.files.shipped import Icons, by_name, spatial_of
 from thermicon.icons.model.iconset import Entry
 
@@ -82,6 +82,8 @@ class Export:
         The layout of the icons' elements; None for icons on one element.
     whole
         The verdict on all elements together; None for one element, and where an icon is not safe by itself.
+    icons
+        The icons on several elements, in the order of what each channel has prepared.
 
     Examples
     --------
@@ -97,6 +99,7 @@ class Export:
     force: bool = False
     layout: Layout | None = None
     whole: Whole | None = None
+    icons: tuple[SpatialIcon, ...] = ()
 
     def __repr__(self) -> str:
         count = count_of(len(self.prepared), "icon")
@@ -163,7 +166,9 @@ class Export:
         if self.layout is not None:
             from .pack_elements import pack_elements
 
-            return pack_elements([channel.prepared for channel in self.channels], self.form, self.layout, self.whole)
+            return pack_elements(
+                self.icons, [channel.prepared for channel in self.channels], self.form, self.layout, self.whole
+            )
         return pack(
             self.prepared, self.form, felt={each.icon: each.to_dict() for each in self.felt}, losses=self._losses
         )
@@ -273,7 +278,7 @@ def export(
                 ExportChannel(element.rig, played, each, element.name)
                 for element, each in zip(layout.elements, ready, strict=True)
             ]
-            found = Export(tuple(channels), form, (), force, layout, judged_together(layout, ready))
+            found = Export(tuple(channels), form, (), force, layout, judged_together(layout, ready), several)
         else:
             prepared = prepare_set(chosen, on, played, form, judge=judge, tail_s=tail_s, pause_s=pause_s, step=step)
             channel = ExportChannel(on, played, prepared)

@@ -5,10 +5,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import Any
 
+from thermicon.icons import SpatialIcon
+
 from ..rig.layout import Layout
 from ..safety.demands import Demands
 from ..safety.whole import Whole
-from .formats import Format
+from .formats import Format, FormatError
 from .formats.form import OneFile
 from .pack import check_names, digest, sealed, sidecar, sidecar_name, sidecar_text, written
 from .prepare import Prepared
@@ -21,16 +23,23 @@ OF_ELEMENT = (
 
 
 def pack_elements(
-    channels: Sequence[Sequence[Prepared]], form: Format, layout: Layout, whole: Whole | None
+    icons: Sequence[SpatialIcon],
+    channels: Sequence[Sequence[Prepared]],
+    form: Format,
+    layout: Layout,
+    whole: Whole | None,
 ) -> dict[str, bytes]:
     """Return the files of icons on several elements: one drive for all where the format holds them, else one for each.
 
-    `channels` are what each element plays of each icon, `whole` is the verdict on all elements together.
+    `channels` are what each element plays of each icon, `whole` is the verdict on all elements together. Raises
+    FormatError for what is not safe.
     """
+    if whole is None or not whole.safe:
+        raise FormatError("the elements are not safe together; nothing is packed")
     document = json.loads(layout.document)
     about = {
         "clock": "one",
-        **({} if whole is None else whole.to_dict()),
+        **whole.to_dict(),
         "layout_sha256": digest(layout.document.encode("utf-8")),
         "layout": {"name": layout.name, "document": document},
     }
@@ -43,8 +52,9 @@ def pack_elements(
             files |= _alone(one, form, told)
         return files
     check_names([one.delivery.icon.name for one in channels[0]], form)
-    for icon in zip(*channels, strict=True):
-        files |= _together(icon, form, form.together, about)
+    for icon, *own in zip(icons, *channels, strict=True):
+        told = {"name": icon.name, "text": str(icon), "content_hash": icon.content_hash}
+        files |= _together(own, form, form.together, {**about, "icon": {**told, "control": icon.context.control}})
     return files
 
 

@@ -98,6 +98,9 @@ def test_sidecars_hold_elements_the_layout_and_one_clock_and_verify(tmp_path: Pa
     assert told["clock"] == "one" and [each["element"] for each in told["elements"]] == ["left", "right"]
     assert told["elements"][1]["channel"] == ["right_current_A", "right_command_V", "right_code"]
     assert told["layout"]["document"] == json.loads(Layout.load("wheel").document)
+    (icon,) = spatial(LEFT_OF_TWO).spatial
+    assert (told["icon"]["text"], told["icon"]["content_hash"]) == (str(icon), icon.content_hash)
+    assert [each["track"]["text"] for each in told["elements"]] == [str(track) for track in icon.tracks.values()]
     claims = claims_of(files["x0.json"])
     assert claims is not None and claims.drive == "x0.csv"
     for inside in (told["elements"][1]["rig"], told["layout"]):
