@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -119,11 +118,6 @@ def _binned(times_s: Array, values: Array) -> Array:
 
 def _until(load: Load, rows: int) -> Load:
     """The same with so many rows, of which the last goes on."""
-    more = (0, rows - len(load.warm_C))
-    return replace(
-        load,
-        current_A=np.pad(load.current_A, more, mode="edge"),
-        power_W=np.pad(load.power_W, more, mode="edge"),
-        warm_C=np.pad(load.warm_C, more, mode="edge"),
-        chill_C=np.pad(load.chill_C, more, mode="edge"),
-    )
+    courses = (load.current_A, load.power_W, load.warm_C, load.chill_C)
+    drawn_A, drawn_W, warm_C, chill_C = (np.pad(one, (0, rows - len(one)), mode="edge") for one in courses)
+    return Load(load.plays, drawn_A, drawn_W, warm_C, chill_C, load.stuck, load.cut_C)

@@ -28,7 +28,7 @@ STEP_S = 0.01
 OFFSETS_S = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, STEP_S)
 """Offsets between channels that are tried, the largest first."""
 APART = "smaller changes, the qualities one after the other, or elements farther apart"
-ANY_CLOCK, ONE_CLOCK = "whatever the clocks of the elements do", "on one clock"
+ANY_CLOCK, ONE_CLOCK = "any offset between elements", "all elements on one clock"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
