@@ -107,7 +107,7 @@ def again(name: str, **values: Any) -> tuple[str, Gate]:
 
 def ready(name: str, verdict: Gate, *warnings: str) -> Any:
     """An icon with its verdict and its warnings."""
-    return Record(delivery=Record(icon=Record(name=name)), verdict=verdict, warnings=warnings)
+    return Record(delivery=Record(name=name), verdict=verdict, warnings=warnings)
 
 
 UNLIKE = [again("a", recovery_s=None, plays=30, faultless_pause_s=8.0, shortest_pause_s=None), ("b", AMBER)]

@@ -32,7 +32,7 @@ class DeliveredDrive:
 
     `rate_Hz` and `requested_Hz` are the actual and requested rows per second, `lead_s` the time when the cue begins.
     `played` goes into files; `designed_trace` and `trace` are the simulation without the device, and with it; `outcome`
-    says whether the design reaches the target.
+    says whether the design reaches the target. `element` is the one of several that plays it, empty where there is one.
     """
 
     icon: Icon
@@ -46,12 +46,18 @@ class DeliveredDrive:
     trace: Trace
     outcome: Outcome | None
     device_warnings: tuple[str, ...] = ()
+    element: str = ""
 
     def __repr__(self) -> str:
         return (
             f"DeliveredDrive({self.icon.name!r} on {self.device.name}, {self.trace.time_s[-1]:g} s at "
             f"{self.rate_Hz:g} Hz, skin {self.trace.skin_C.min():.2f} … {self.trace.skin_C.max():.2f} °C)"
         )
+
+    @property
+    def name(self) -> str:
+        """Name of the icon, and of its element where there are several."""
+        return f"{self.icon.name} on {self.element}" if self.element else self.icon.name
 
     @property
     def deviation(self) -> DeliveryDeviation:

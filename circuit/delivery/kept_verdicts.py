@@ -36,14 +36,17 @@ RECORDS: tuple[type, ...] = (Before, Check, Gate, Limits, Repeated, Rule, Scenar
 """All that a verdict is made of."""
 
 
-def kept_or_judged(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> Sequence[Gate]:
-    """What `worst_cases` finds, judged now or by this program before; only what may be written is kept."""
+def kept_or_judged(deliveries: Sequence[DeliveredDrive], pause_s: float | None, about: str = "") -> Sequence[Gate]:
+    """What `worst_cases` finds, judged now or by this program before; only what may be written is kept.
+
+    `about`: what else its file is of, such as the layout.
+    """
     try:
         folder = private_folder(cache_folder() / "verdicts")
         judged = text_of((code_digest(), numerics(), deliveries))
     except (OSError, TypeError):  # nowhere to keep it, or something that a hash cannot hold
         return worst_cases(deliveries, pause_s)
-    path = folder / sha256(judged + repr(pause_s).encode()).hexdigest()
+    path = folder / sha256(judged + repr(pause_s).encode() + about.encode()).hexdigest()
     if (known := read(path, len(deliveries))) is not None:
         return known
     verdicts = worst_cases(deliveries, pause_s)

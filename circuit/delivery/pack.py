@@ -52,7 +52,7 @@ def pack(
     """Return the files of an export: a sidecar and a drive for each cue, then what belongs to the set."""
     names = [cue.delivery.icon.name for cue in ready]
     check_names(names, form)
-    drives = [(form.file_name(cue.delivery), _written(cue, form)) for cue in ready]
+    drives = [(form.file_name(cue.delivery), written(cue, form)) for cue in ready]
     shared: dict[str, bytes] = {}
     if form.player is not None and ready:
         played = []
@@ -71,7 +71,7 @@ def pack(
     return {**files, **shared}
 
 
-def _written(cue: Prepared, form: Format) -> bytes:
+def written(cue: Prepared, form: Format) -> bytes:
     """The drive of a cue; raises FormatError with its name where it cannot be written."""
     name, drive = cue.delivery.icon.name, form.file_name(cue.delivery)
     if unsafe := [str(refusal) for refusal in cue.refusals if not refusal.forcible]:

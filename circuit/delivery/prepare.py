@@ -68,7 +68,11 @@ def prepare_set(
         form.write(deliveries[-1])  # a drive that the format cannot hold is refused before the gate, which takes longer
         if step is not None:
             step(done, len(icons))
-    verdicts = judge(deliveries, pause_s) if deliveries else ()
+    return judged_set(deliveries, judge(deliveries, pause_s) if deliveries else ())
+
+
+def judged_set(deliveries: Sequence[DeliveredDrive], verdicts: Sequence[Gate]) -> tuple[Prepared, ...]:
+    """Deliveries with their verdicts, and what refuses them."""
     return tuple(
         Prepared(one, verdict, one.deviation, refusals_of(one, verdict, one.deviation), open_loop_spread(one))
         for one, verdict in zip(deliveries, verdicts, strict=True)

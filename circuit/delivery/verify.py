@@ -97,10 +97,16 @@ def _own(name: str, content: bytes, about: Mapping[str, Any]) -> Iterator[Remark
     """The sidecar against its own digest, byte for byte, and the rig and device in it against theirs."""
     if sidecar_text(sealed(about)) != content:
         yield Remark(name, "wrong", "was changed after it was exported: its own digest does not match", RESTORE)
-    rig = about.get("rig")
-    document = rig.get("document") if isinstance(rig, dict) else None
-    for what, held in (("rig", document), ("device", about.get("device"))):
-        if digest_of_content(held) != about.get(f"{what}_sha256"):
+    elements = about.get("elements")
+    several: list[Mapping[str, Any]] = []
+    if isinstance(elements, list):
+        several = [each for each in elements if isinstance(each, dict)]
+    kept = [("rig", each) for each in several or [about]] + [("layout", about)] * ("layout" in about)
+    for what, holder in (*kept, ("device", about)):
+        held = holder.get(what)
+        if what != "device":
+            held = held.get("document") if isinstance(held, dict) else None
+        if digest_of_content(held) != holder.get(f"{what}_sha256"):
             text = f"contains another {what} than the one of its digest ({what}_sha256)"
             yield Remark(name, "wrong", text, RESTORE)
 

@@ -10,14 +10,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
+
 from thermicon.base.checks.arguments import checked
 from thermicon.base.files.inputs import named_text, shipped_names
 from thermicon.base.words.clean_text import name_fault
 
+from .faults import unusual
 from .layoutfile import LayoutTable, Sink, Supply, read_layout_table
 from .rig import AnyRig, Rig, rig_names
 from .rigfile import RigError, parse_toml
+from .usual import unusual_values
 
+NEIGHBOURS = ((0.0, 0.022, 0.14), (0.5, 0.011, 0.07), (1.0, 0.006, 0.04), (2.0, 0.0014, 0.009))
+"""Bare skin in mm between two elements, and by how much 1 K of one changes the other, in the mean and in its nearest
+millimetre: solution in two dimensions of skin under elements 7.4 mm wide, after 10 s, by this project."""
 _ELEMENTS = re.compile(rb"(?m)^\s*(\[\[\s*element\s*\]\]|element\s*=)")
 
 
@@ -152,15 +159,17 @@ class Layout:
         """All that counts of the layout as JSON: layouts are equal if their documents are; of one, that of its rig."""
         if len(self.elements) == 1:
             return self.alone.document
-        held = {
-            "name": self.name,
-            "surfaces": self.surfaces,
-            "lapse": self.lapse,
-            "elements": [[each.name, each.place_m, each.sink, each.gap_m, each.rig.document] for each in self.elements],
-            "sinks": [sink.model_dump() for sink in self.sinks],
+        own = ("name", "place_m", "sink", "gap_m")
+        told = {
+            **{key: getattr(self, key) for key in ("name", "title", "surfaces", "lapse")},
+            "sink": [sink.model_dump() for sink in self.sinks],
             "supply": self.supply and self.supply.model_dump(),
+            "element": [
+                {**{key: getattr(element, key) for key in own}, "rig": json.loads(element.rig.document)}
+                for element in self.elements
+            ],
         }
-        return json.dumps(held, ensure_ascii=False)
+        return json.dumps(told, sort_keys=True, ensure_ascii=False)
 
     @property
     def toml(self) -> str:
@@ -171,6 +180,23 @@ class Layout:
         for element in self.elements:
             names.setdefault(element.rig, []).append(element.name)
         return "\n".join(f"# {', '.join(named)}\n{rig.toml}" for rig, named in names.items())
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences on what is unusual about gaps, sinks and the supply; rigs have warnings of their own."""
+        told = {
+            "element": [{"gap_mm": 1e3 * gap} for gap in dict.fromkeys(one.gap_m for one in self.elements) if gap],
+            "sink": [sink.model_dump() for sink in self.sinks],
+            "supply": {} if self.supply is None else self.supply.model_dump(),
+        }
+        close = []
+        for gap in dict.fromkeys(one.gap_m for one in self.elements):
+            if gap is not None and 1e3 * gap < NEIGHBOURS[-1][0]:
+                at_mm, mean, near = zip(*NEIGHBOURS, strict=True)
+                by = {"mean": np.interp(1e3 * gap, at_mm, mean), "near": np.interp(1e3 * gap, at_mm, near)}
+                names = ", ".join(one.name for one in self.elements if one.gap_m == gap)
+                close.append(unusual("close", names=names, gap=1e3 * gap, **by))
+        return tuple(each.text for each in (*close, *unusual_values(told, "layout")))
 
     @property
     def alone(self) -> Rig:

@@ -37,10 +37,14 @@ class ElementTable(KeyTable):
 
 
 class Sink(KeyTable):
-    """A body that several elements give their heat to: its resistance to the air in K/W, for all of them together."""
+    """A body that several elements give their heat to: its resistance to the air in K/W, for all of them together.
+
+    With its heat capacity in J/K, where that is known, it follows their mean and not each peak.
+    """
 
     name: kinds.Name
     resistance_K_per_W: kinds.Ideal
+    capacity_J_per_K: kinds.Ideal | None = None
 
 
 class Supply(KeyTable):

@@ -24,9 +24,9 @@ def usual_values() -> Mapping[str, tuple[float, float, str]]:
     return table
 
 
-def unusual_values(document: Mapping[str, Any]) -> Iterator[Unusual]:
-    """Say which numbers of a rig's document lie outside what is usual, and the unit in which they would be usual."""
-    usual = usual_values()
+def unusual_values(document: Mapping[str, Any], of: str = "keys") -> Iterator[Unusual]:
+    """Say which numbers of a rig's document (or a `layout`) are not usual, and the unit in which they would be."""
+    usual = shipped_table(USUAL_VALUES)[of]
     for key, value, layer in _numbers(document):
         unit, name = unit_of(key), f"{key} of the {layer}" if layer else key
         general = re.sub(r"\.\d+\.", ".0.", key)

@@ -167,6 +167,15 @@ def icons_of(icons: Icons) -> tuple[Icon, ...]:
     return tuple(found)
 
 
+def spatial_of(icons: Icons) -> tuple[SpatialIcon, ...]:
+    """The icons on several elements of what `set_of` takes; none where they are on one."""
+    whole = read_cue(icons) if isinstance(icons, str | Path) else icons
+    if isinstance(whole, IconSet):
+        return whole.spatial
+    given = (whole,) if isinstance(whole, Entry) else tuple(whole)
+    return IconSet.of(given).spatial if given and all(isinstance(each, SpatialIcon) for each in given) else ()
+
+
 def by_name(icons: Icons) -> dict[str, Icon]:
     """The icons of `icons_of`, each by its name; an `InputError` where two have one name."""
     known: dict[str, Icon] = {}

@@ -22,11 +22,13 @@ from ..messages import BAD_INPUT, OPTIONS, REFUSED, MissingArgument, note, progr
 from ..report.blocks import grid
 from ..report.gate_words import CAUTION, gate_words, spread_text, steps_of, warning_lines
 from ..report.terminal import show
+from .on_elements import elements_asked, together_line
 from .options import IconName, NoFile, RigOptions, Tail, flag, opt, out, pick, read_set
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Export
+    from thermicon.circuit import Export, Layout, Rig
     from thermicon.circuit.delivery.prepare import Prepared
+    from thermicon.icons import Icon, SpatialIcon
 
 LONGEST_PAUSE_S = 600.0
 """As in `thermicon.circuit.safety.repeated`, repeated here to avoid its imports."""
@@ -88,15 +90,19 @@ def export_command(
 
     form, whole = load_format(to), read_set([file])
     check_export_folder(folder, force, REPLACED)
-    where = rig.load(whole, file)
-    if rig.rig is None and where.name == DEFAULT_RIG:
-        note(f"on the {where.name} rig; --rig names another")
-    chosen = pick(whole, icon)
+    chosen: list[Icon] | list[SpatialIcon]
+    where: Rig | Layout
+    felt, warned = None, list[str]()
+    if whole.spatial:
+        where, chosen = elements_asked(whole, icon, rig, file)
+    else:
+        where, chosen = rig.load(whole, file), pick(whole, icon)
+        if rig.rig is None and where.name == DEFAULT_RIG:
+            note(f"on the {where.name} rig; --rig names another")
+        felt = partial(felt_in, rest=others(whole, chosen), warn=warned.append, tail_s=tail)
     check_names([one.name for one in chosen], form)
-    warned: list[str] = []
     try:
         with progress_bar("simulating", "judging all together") as progress:
-            felt = partial(felt_in, rest=others(whole, chosen), warn=warned.append, tail_s=tail)
             ready = export(
                 chosen, where, device, form, tail_s=tail, pause_s=pause, force=force, felt=felt, step=progress
             )  # fmt: skip
@@ -107,21 +113,26 @@ def export_command(
     for warning in warned:
         note(f"warning: {warning}")
     if refused(ready):
-        for line in (*map(icon_line, ready.prepared), *(f"warning: {line}" for line in warning_lines(ready.prepared))):
+        for line in (*map(icon_line, ready.tracks), *(f"warning: {line}" for line in warning_lines(ready.tracks))):
             note(line)
         note(CAUTION)
         note("nothing was written", always=True)
         raise typer.Exit(REFUSED)
-    report_icons(ready.prepared)
+    report_icons(ready.tracks)
+    if ready.whole is not None:
+        note(together_line(ready.whole))
+        for caution in ready.whole.cautions:
+            note(f"warning: all elements together: {caution}")
     before = ready.write(folder, force, REPLACED)
-    count = len(ready.prepared)
+    count = sum(name.endswith(".json") for name in ready.files)
     drives = "1 drive with its sidecar" if count == 1 else f"{count} drives with their sidecars"
     note(f"wrote {drives} into {folder}: {', '.join(_shown(list(ready.files)))}")
     if before is not None:
         note(f"the folder as it was before is {before}")
     note(f"to play: {form.how}")
     note(CAUTION)
-    note("Next: test it with people; thermicon list --copy study study.toml writes a study to start from")
+    if not whole.spatial:
+        note("Next: test it with people; thermicon list --copy study study.toml writes a study to start from")
 
 
 def report_icons(ready: Sequence[Prepared]) -> None:
@@ -135,7 +146,7 @@ def report_icons(ready: Sequence[Prepared]) -> None:
         note(f"warning: {line}")
     for about, text in gate_words(ready):
         note(f"{about}: {text}")
-    spreads = [(one.spread, one.delivery.icon.name) for one in ready if one.spread is not None]
+    spreads = [(one.spread, one.delivery.name) for one in ready if one.spread is not None]
     if spreads:
         widest, name = max(spreads, key=lambda each: each[0].step_K[1] - each[0].step_K[0])
         note(f"{name}: {spread_text(widest)}")
@@ -148,7 +159,7 @@ def icon_line(one: Prepared) -> str:
     largest = 1e3 * max(abs(each.largest_K) for each in receptors)
     rms = 1e3 * max(each.rms_K for each in receptors)
     return (
-        f"{delivery.icon.name}: {number(delivery.file_s, 2)} s {' '.join(steps_of(delivery))} on "
+        f"{delivery.name}: {number(delivery.file_s, 2)} s {' '.join(steps_of(delivery))} on "
         f"{delivery.device.name}, receptors within {number(largest)} mK of the design (RMS {number(rms)} mK), "
         f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
     )

@@ -38,9 +38,7 @@ def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
     """
     from thermicon.circuit.safety.gate import Gate
 
-    gates = [
-        (one.delivery.icon.name, one.verdict) for one in ready if isinstance(one.verdict, Gate) and one.verdict.safe
-    ]
+    gates = [(one.delivery.name, one.verdict) for one in ready if isinstance(one.verdict, Gate) and one.verdict.safe]
     if not gates:
         return []
     again = "repeated plays" + (", in any order" if len(gates) > 1 else "")
@@ -156,7 +154,7 @@ def warning_lines(ready: Sequence[Prepared]) -> Iterator[str]:
     alike: dict[str, tuple[str, list[str]]] = {}
     for one in ready:
         for warning in one.warnings:
-            alike.setdefault(NUMBER.sub("#", warning), (warning, []))[1].append(one.delivery.icon.name)
+            alike.setdefault(NUMBER.sub("#", warning), (warning, []))[1].append(one.delivery.name)
     for warning, names in alike.values():
         others = list(dict.fromkeys(names))[1:]
         more = f"; alike, with numbers in their sidecars: {', '.join(others)}" if others else ""

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from itertools import groupby, pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -68,6 +69,14 @@ class Played:
         return f"safety {self.safety or 'not judged'}, back at rest {back}, shortest safe pause {pause}"
 
 
+class OneFile(NamedTuple):
+    """How several elements are in one file: its bytes, its columns, and what in it is of each element."""
+
+    write: Callable[[Sequence[DeliveredDrive]], bytes]
+    columns: Callable[[Sequence[DeliveredDrive]], tuple[Column, ...]]
+    channels: Callable[[Sequence[DeliveredDrive]], tuple[object, ...]]
+
+
 @dataclass(frozen=True, slots=True)
 class Format:
     """One kind of file: what it is called, which devices take it, where its layout is documented, and how to write it.
@@ -77,7 +86,7 @@ class Format:
     them, `facts` further facts for the sidecar. `player` gives the files of the whole set, named in
     `set_files`, from all its drives and what the hardware must prevent; it `holds` some of these demands while it plays
     and `proves` others before it does. `needs` is the package that writes it, `fits` raises FormatError for a device
-    that it has no use for.
+    that it has no use for. `together`: how one file holds several elements; None: each has a file of its own.
     """
 
     name: str
@@ -98,6 +107,7 @@ class Format:
     proves: tuple[str, ...] = ()
     needs: str = ""
     fits: Callable[[Device], None] | None = None
+    together: OneFile | None = None
 
     def __repr__(self) -> str:
         return f"Format({self.name!r}, *{self.suffix}, for {', '.join(self.takes)})"
@@ -145,6 +155,17 @@ def samples_of(delivery: DeliveredDrive) -> Samples:
     """The samples of a drive whose device plays samples."""
     assert isinstance(delivery.played, Samples)
     return delivery.played
+
+
+def on_one_clock(deliveries: Sequence[DeliveredDrive]) -> list[Samples]:
+    """The samples of elements that are played together, all as long as the longest; FormatError for unlike rates."""
+    samples = [samples_of(each) for each in deliveries]
+    rates = {each.rate_Hz: one.element for each, one in zip(samples, deliveries, strict=True)}
+    if len(rates) > 1:
+        told = ", ".join(f"{element} {rate:g} Hz" for rate, element in rates.items())
+        raise FormatError(f"elements are played on one clock, and have several ({told}); give all one driver.update_Hz")
+    longest = max(len(each.codes) for each in samples)
+    return [each.until((longest - 1) / each.rate_Hz) for each in samples]
 
 
 def course_C(delivery: DeliveredDrive, every_s: float) -> Array:

@@ -6,7 +6,9 @@ play any profile on all five zones.
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import reduce
 
 import numpy as np
 import numpy.typing as npt
@@ -17,7 +19,7 @@ from ..commands import Column
 from ..delivered_drive import DeliveredDrive, ModuleDrive, ThermodeDrive
 from ..device import Device
 from ..setpoints import Setpoints
-from .form import PLAYS_SAMPLES, PLAYS_TEMPERATURES, Format, FormatError, events_in, samples_of
+from .form import PLAYS_SAMPLES, PLAYS_TEMPERATURES, Format, FormatError, OneFile, events_in, on_one_clock, samples_of
 
 FIRST = "rest"
 TIME = Column("time_s", "s", "time of the row; the icon begins in the second row, and a row is held until the next")
@@ -54,26 +56,44 @@ def write(delivery: DeliveredDrive) -> bytes:
 
 def write_rows(delivery: DeliveredDrive, rows: npt.NDArray[np.intp]) -> bytes:
     """Return the table of some samples, by their places."""
-    assert isinstance(delivery, ModuleDrive)
-    samples, switches = delivery.played, delivery.device.kind.switches
-    times = samples.time_s[rows]
-    current = () if switches else (delivery.delivered.at(times),)
-    numbers = zip(*(map(repr, each.tolist()) for each in (times, *current, samples.command[rows])), strict=True)
-    cells = ([*each, code] for each, code in zip(numbers, samples.codes[rows].tolist(), strict=True))
-    return _written(delivery, columns(delivery), times, cells)
+    return _written([delivery], columns(delivery), samples_of(delivery).time_s[rows], [_cells(delivery, rows)])
 
 
 def write_setpoints(delivery: DeliveredDrive) -> bytes:
     """Return the table; temperatures have as many decimals as the device's step."""
+    rows = np.arange(len(samples_of(delivery).codes))
+    return _written([delivery], setpoint_columns(delivery), samples_of(delivery).time_s, [_cells(delivery, rows)])
+
+
+def write_together(deliveries: Sequence[DeliveredDrive]) -> bytes:
+    """Return the table of several elements on one clock, which has the columns of each."""
+    samples = on_one_clock(deliveries)
+    rows = reduce(np.union1d, (each.rows() for each in samples))
+    cells = [_cells(replace(one, played=each), rows) for one, each in zip(deliveries, samples, strict=True)]
+    return _written(deliveries, columns_together(deliveries), samples[0].time_s[rows], cells)
+
+
+def columns_together(deliveries: Sequence[DeliveredDrive]) -> tuple[Column, ...]:
+    """Time, the columns of each element behind its name, event."""
+    all_of = setpoint_columns if deliveries[0].device.kind.regulated else columns
+    own = [(one.element, column) for one in deliveries for column in all_of(one)[1:-1]]
+    return (TIME, *(replace(column, name=f"{element}_{column.name}") for element, column in own), EVENT)
+
+
+def _cells(delivery: DeliveredDrive, rows: npt.NDArray[np.intp]) -> Iterable[Sequence[object]]:
+    """What a table has of some samples of one element, between time and event."""
     samples, device = samples_of(delivery), delivery.device
-    times, levels = samples.time_s, samples.command
-    decimals = max(0, int(np.ceil(-np.log10(samples.scale.step) - 1e-9)))
-    volts = volts_of(device, levels) if has_voltage(device) else None
-    cells = (
-        [repr(time), f"{level:.{decimals}f}", *(() if volts is None else (f"{volts[row]:.6f}",))]
-        for row, (time, level) in enumerate(zip(times.tolist(), levels.tolist(), strict=True))
-    )
-    return _written(delivery, setpoint_columns(delivery), times, cells)
+    levels = samples.command[rows]
+    if device.kind.regulated:
+        decimals = max(0, int(np.ceil(-np.log10(samples.scale.step) - 1e-9)))
+        texts = [[f"{level:.{decimals}f}" for level in levels.tolist()]]
+        if has_voltage(device):
+            texts.append([f"{volts:.6f}" for volts in volts_of(device, levels).tolist()])
+        return zip(*texts, strict=True)
+    assert isinstance(delivery, ModuleDrive)
+    current = () if device.kind.switches else (delivery.delivered.at(samples.time_s[rows]),)
+    numbers = (map(repr, each.tolist()) for each in (*current, levels))
+    return zip(*numbers, samples.codes[rows].tolist(), strict=True)
 
 
 def write_predicted(delivery: DeliveredDrive) -> bytes:
@@ -85,17 +105,26 @@ def write_predicted(delivery: DeliveredDrive) -> bytes:
 
 
 def _written(
-    delivery: DeliveredDrive, names: Sequence[Column], time_s: Array, cells: Iterable[Sequence[object]]
+    deliveries: Sequence[DeliveredDrive],
+    names: Sequence[Column],
+    time_s: Array,
+    cells: Sequence[Iterable[Sequence[object]]],
 ) -> bytes:
     """A table with the events as its last column: the rest in the first row, each event in the first row of its own."""
     marks, last = {0: [FIRST]}, len(time_s) - 1
-    for event in events_in(delivery):
-        row = last if event.name == "end" else min(int(np.searchsorted(time_s, event.time_s - 1e-8)), last)
-        marks.setdefault(row, []).append(event.name)
+    for one in deliveries:
+        for event in (each for each in events_in(one) if each.name != "end"):
+            row = min(int(np.searchsorted(time_s, event.time_s - 1e-8)), last)
+            marks.setdefault(row, []).append(f"{one.element}: {event.name}" if one.element else event.name)
+    marks.setdefault(last, []).append("end")
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(column.name for column in names)
-    rows.writerows([*each, "; ".join(marks.get(row, ()))] for row, each in enumerate(cells))
+    together = zip(map(repr, time_s.tolist()), *cells, strict=True)
+    rows.writerows(
+        [time, *(cell for each in own for cell in each), "; ".join(marks.get(row, ()))]
+        for row, (time, *own) in enumerate(together)
+    )
     return text.getvalue().encode("utf-8")
 
 
@@ -111,6 +140,14 @@ def volts_of(device: Device, display_C: Array) -> Array:
     return (0.0 if offset is None else offset.central) + gain.central * display_C
 
 
+def channels_together(deliveries: Sequence[DeliveredDrive]) -> tuple[object, ...]:
+    """The columns of each element."""
+    names = [column.name for column in columns_together(deliveries)]
+    return tuple([name for name in names if name.startswith(f"{one.element}_")] for one in deliveries)
+
+
+TABLE_TOGETHER = OneFile(write_together, columns_together, channels_together)
+
 CSV = Format(
     name="csv",
     title="table with a row for each update",
@@ -121,6 +158,7 @@ CSV = Format(
     how="output each row's value at its time and hold it until the next row",
     write=write,
     columns=columns,
+    together=TABLE_TOGETHER,
 )
 
 SETPOINT_CSV = Format(
@@ -133,6 +171,7 @@ SETPOINT_CSV = Format(
     how="give the controller each row's display_C at its time; it holds the display there until the next row",
     write=write_setpoints,
     columns=setpoint_columns,
+    together=TABLE_TOGETHER,
 )
 
 
@@ -150,17 +189,49 @@ def serial_columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
 def serial_write(delivery: DeliveredDrive) -> bytes:
     """Return the commands; the last, L, starts the stimulation."""
     assert isinstance(delivery, ThermodeDrive)
-    setpoints = delivery.played
-    _check(setpoints, delivery.device.name)
-    greatest = max(setpoints.baseline, *(level for _, level in setpoints.segments)) + round(ABOVE_K / setpoints.step_K)
-    segments = "".join(f"{ticks:03d}{level:03d}" for ticks, level in setpoints.segments)
-    commands = [
-        f"N{setpoints.baseline:03d}",
-        f"Om{min(greatest, MOST):03d}",
-        f"Uw{ALL_ZONES}{len(setpoints.segments):03d}{segments}",
-        f"Ue{ALL_ZONES}",
-        "L",
+    _check(delivery.played, delivery.device.name)
+    return _commands({ALL_ZONES: delivery.played})
+
+
+def serial_together(deliveries: Sequence[DeliveredDrive]) -> bytes:
+    """Return the commands for elements that are the zones of one thermode; zones that play alike share a profile."""
+    zones = zones_of(deliveries)
+    profiles: dict[Setpoints, list[str]] = {}
+    for zone, one in zip(zones, deliveries, strict=True):
+        assert isinstance(one, ThermodeDrive)
+        _check(one.played, one.device.name)
+        profiles.setdefault(one.played, []).append(zone)
+    return _commands({_mask(masks): played for played, masks in profiles.items()})
+
+
+def zones_of(deliveries: Sequence[DeliveredDrive]) -> tuple[str, ...]:
+    """The mask of the zone of each element, in their order; FormatError where the thermode has too few."""
+    if len(deliveries) > len(ALL_ZONES):
+        raise FormatError(
+            f"tcs2-serial: a TCS II has {len(ALL_ZONES)} zones, and the layout {len(deliveries)} elements; give a "
+            f"layout of at most {len(ALL_ZONES)}, or another format"
+        )
+    places = range(len(ALL_ZONES))
+    return tuple("".join("1" if each == place else "0" for each in places) for place, _ in enumerate(deliveries))
+
+
+def _mask(zones: Iterable[str]) -> str:
+    """The mask of several zones."""
+    return "".join(max(bits) for bits in zip(*zones, strict=True))
+
+
+def _commands(profiles: Mapping[str, Setpoints]) -> bytes:
+    """The commands that play profiles by the mask of their zones, all from one baseline."""
+    first, *_ = profiles.values()
+    levels = [level for each in profiles.values() for level in (each.baseline, *(level for _, level in each.segments))]
+    if len({each.baseline for each in profiles.values()}) > 1:
+        raise FormatError("tcs2-serial: all zones have one baseline; give the set one, or the elements one rig")
+    loaded = [
+        f"Uw{mask}{len(each.segments):03d}" + "".join(f"{ticks:03d}{level:03d}" for ticks, level in each.segments)
+        for mask, each in profiles.items()
     ]
+    greatest = min(max(levels) + round(ABOVE_K / first.step_K), MOST)
+    commands = [f"N{first.baseline:03d}", f"Om{greatest:03d}", *loaded, f"Ue{_mask(profiles)}", "L"]
     return ("\n".join(commands) + "\n").encode("ascii")
 
 
@@ -188,4 +259,5 @@ SERIAL = Format(
     how="115,200 baud: send each line without its line feed; wait at the baseline before L; A aborts",
     write=serial_write,
     columns=serial_columns,
+    together=OneFile(serial_together, lambda deliveries: serial_columns(deliveries[0]), zones_of),
 )

@@ -6,6 +6,8 @@ resampled. An output that is not DC-coupled loses every held level.
 
 import io
 import wave
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,7 +16,7 @@ from thermicon.base.numbers.program import own_version
 from ..commands import Column
 from ..delivered_drive import DeliveredDrive
 from ..device import Device
-from .form import PLAYS_SAMPLES, PLAYS_TEMPERATURES, Format, FormatError, samples_of
+from .form import PLAYS_SAMPLES, PLAYS_TEMPERATURES, Format, FormatError, OneFile, on_one_clock, samples_of
 from .tables import CODE, VOLTAGE, has_voltage, volts_of
 
 FULL = 32768
@@ -94,12 +96,29 @@ def tdms_columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     return (device.kind.command, CODE, *((VOLTAGE,) if has_voltage(device) else ()))
 
 
+def tdms_columns_together(deliveries: Sequence[DeliveredDrive]) -> tuple[Column, ...]:
+    """Channels of each element, which begin with its name where there are several."""
+    own = [(one.element, column) for one in deliveries for column in tdms_columns(one)]
+    return tuple(replace(column, name=f"{element}_{column.name}") if element else column for element, column in own)
+
+
+def tdms_channels(deliveries: Sequence[DeliveredDrive]) -> tuple[object, ...]:
+    """Names of the channels of each element."""
+    return tuple([column.name for column in tdms_columns_together([one])] for one in deliveries)
+
+
 def tdms_write(delivery: DeliveredDrive) -> bytes:
     """The file; raises FormatError where npTDMS is not installed."""
+    return tdms_together([delivery])
+
+
+def tdms_together(deliveries: Sequence[DeliveredDrive]) -> bytes:
+    """The file of elements on one clock; raises FormatError where npTDMS is not installed."""
+    delivery, every = deliveries[0], on_one_clock(deliveries)
     TDMS.check(delivery.device)
     from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 
-    samples = samples_of(delivery)
+    samples = every[0]
     if samples.scale.highest > LARGEST or samples.scale.lowest < -LARGEST - 1:
         raise FormatError(
             f"tdms: codes are written in 32 bits, up to {LARGEST:,}; {delivery.device.name} has "
@@ -108,12 +127,14 @@ def tdms_write(delivery: DeliveredDrive) -> bytes:
     clock = {"wf_start_offset": 0.0, "wf_increment": 1.0 / samples.rate_Hz, "wf_samples": len(samples.codes)}
     root = RootObject({"name": delivery.icon.name, "author": f"thermicon {own_version()}"})
     group = GroupObject(GROUP, {"device": delivery.device.name, "rig": delivery.rig.name})
-    values = [samples.command, samples.codes.astype("<i4")]
-    if has_voltage(delivery.device):
-        values.append(volts_of(delivery.device, samples.command))
+    values = []
+    for each in every:
+        values += [each.command, each.codes.astype("<i4")]
+        if has_voltage(delivery.device):
+            values.append(volts_of(delivery.device, each.command))
     channels = [
         ChannelObject(GROUP, column.name, value, {"unit_string": column.unit, **clock})
-        for column, value in zip(tdms_columns(delivery), values, strict=True)
+        for column, value in zip(tdms_columns_together(deliveries), values, strict=True)
     ]
     file = io.BytesIO()
     with TdmsWriter(file) as writer:
@@ -147,4 +168,5 @@ TDMS = Format(
     write=tdms_write,
     columns=tdms_columns,
     needs="npTDMS",
+    together=OneFile(tdms_together, tdms_columns_together, tdms_channels),
 )

@@ -1,6 +1,7 @@
 """A layout of one element is its rig; one of several is refused with a cure."""
 
 import math
+import re
 import tomllib
 from functools import partial
 from pathlib import Path
@@ -140,3 +141,21 @@ def test_a_wrong_layout_file_is_refused_with_place_and_cure(change: str, told: s
     with pytest.raises(InputError, match=told) as refusal:
         Layout.load(path)
     assert all(line.startswith(f"{path}: ") for line in str(refusal.value).splitlines())
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ("gap_mm = 1.9", "left, right: with 1.9 mm of bare skin .* nearest millimetre by 0.012 K"),
+        ("gap_mm = 0", "left, right: with 0 mm .* by 0.022 K .* nearest millimetre by 0.14 K"),
+        ("gap_mm = 0.05", r"element.0.gap_mm = 0.05 mm: usual are 0.1 to 500 mm; 0.05 looks like m, 50 mm"),
+        ("gap_mm = 0.0054", "0.0054 looks like m, 5.4 mm"),
+        ("[supply]\ncurrent_limit_A = 900\npower_limit_W = 40", "900 looks like mA, 0.9 A"),
+        ("gap_mm = 2.1\n[supply]\ncurrent_limit_A = 99\npower_limit_W = 1999", None),
+    ],
+)
+def test_numbers_of_a_layout_that_are_not_usual_are_told(tmp_path: Path, change: str, told: str | None) -> None:
+    where = 'rig = "thenar"\nplace_mm = [0, 0]'
+    text = OWN.replace(where, f"{where}\n{change}") if "gap" in change else OWN + change
+    warnings = Layout.load(file_of(tmp_path, text)).warnings
+    assert any(re.search(told, each) for each in warnings) if told else not warnings

@@ -283,3 +283,13 @@ def test_the_page_of_the_gate_has_every_check_with_its_scenario_and_each_source_
     delivered = delivered_html(ready)
     assert "<th>repeated plays</th><td>green, 12 plays" in delivered
     assert delivered.count("your hardware must provide") == 1
+
+
+def test_icons_on_several_elements_are_told_by_element_and_judged_together(cli: Cli, tmp_path: Path) -> None:
+    done = cli(
+        "export", "bars", "--rig", "tcs2-strips", "--icon", "upward", "--to", "tcs2-serial", "-o", tmp_path / "x"
+    )
+    assert done.exit_code == 0
+    assert "upward on s5: " in done.stderr and "nearest millimetre by 0.14 K" in done.stderr
+    assert "all elements together: green" in done.stderr and "whatever their clocks do" in done.stderr
+    assert cli("export", "--verify", tmp_path / "x").exit_code == 0
