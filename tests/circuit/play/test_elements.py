@@ -1,4 +1,4 @@
-"""Several elements under one guard: each plays its own track, and what stops one stops all, as quickly as one alone."""
+"""Several elements under one guard."""
 
 import math
 import re
