@@ -19,8 +19,10 @@ class ElementLines:
     `apart_s` is the longest time in s from the first to the last line of a row; `tested` the element that `test` is of.
     """
 
-    def __init__(self, lines: Mapping[str, Line], clock: Callable[[], float]) -> None:
-        self._lines, self._clock = dict(lines), clock
+    def __init__(
+        self, lines: Mapping[str, Line], clock: Callable[[], float], apart_at_most_s: float = APART_AT_MOST_S
+    ) -> None:
+        self._lines, self._clock, self._apart_at_most_s = dict(lines), clock, apart_at_most_s
         self._offs = 0
         self.apart_s, self.tested = 0.0, next(iter(self._lines))
 
@@ -39,10 +41,10 @@ class ElementLines:
                 return None
             apart_s = self._clock() - began_s
             self.apart_s = max(self.apart_s, apart_s)
-            if apart_s > APART_AT_MOST_S:
+            if apart_s > self._apart_at_most_s:
                 raise Stopped(
                     f"{name}: it had a row {apart_s:.2f} s after the row was begun, and elements may be "
-                    f"{APART_AT_MOST_S:g} s apart"
+                    f"{self._apart_at_most_s:g} s apart"
                 )
         clocked = [still for still in playing if still is not None]
         return (lambda: any(still() for still in clocked)) if clocked else None

@@ -19,6 +19,7 @@ OF_ELEMENT = (
 ELEMENTS = """ELEMENTS = {{  # and numbers of theirs; sensors, and functions of a controller, are dicts by these names
 {elements}
 }}
+APART_S = {apart_s!r}  # from the first to the last element of a row, at most
 """
 GUARD = """
 
@@ -54,7 +55,7 @@ FUNCTION_LINES = """
 
 def _line(send, off, test, feed):
     of = [(name, send[name], off[name], (test or {}).get(name), (feed or {}).get(name)) for name in ELEMENTS]
-    return ElementLines({name: FunctionLine(*own) for name, *own in of}, lambda: time.monotonic())
+    return ElementLines({name: FunctionLine(*own) for name, *own in of}, lambda: time.monotonic(), APART_S)
 """
 TCS2_COURSE = """    corners = course_of(commands)
     check_commands(drive_file, [level_C for _, level_C in corners], COMMANDS[os.path.basename(drive_file)])
@@ -79,6 +80,7 @@ def element_script(
     drives: Mapping[str, Sequence[JudgedDrive]],
     off_V: Mapping[str, float] | None = None,
     V_per_A: Mapping[str, float] | None = None,
+    apart_at_most_s: float = element_lines.APART_AT_MOST_S,
 ) -> str:
     """The script for elements, in the order of zones where they are some: strictest `numbers`, and those of each.
 
@@ -96,7 +98,9 @@ def element_script(
     for name, own in elements.items():
         other = {key: getattr(own, key) for key in OF_ELEMENT if getattr(own, key) != getattr(numbers, key)}
         others[name] = repr(other).replace("inf", "math.inf")
-    top = head(on, numbers, names, digests, commands, courses) + ELEMENTS.format(elements=table(others))
+    top = head(on, numbers, names, digests, commands, courses) + ELEMENTS.format(
+        elements=table(others), apart_s=apart_at_most_s
+    )
     if kind == "ni":
         channels = {name: f"Dev1/ao{place}" for place, name in enumerate(elements)}
         top += f"CHANNEL = {json.dumps(channels)}\nOFF_V = {off_V!r}\nV_PER_A = {V_per_A!r}\n"

@@ -3,11 +3,13 @@
 import csv
 import hashlib
 import io
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from ...play.element_lines import APART_AT_MOST_S
 from ...play.element_script import element_script
 from ...play.script import COURSE_EVERY_S, JudgedDrive, script
 from ...play.watch import UNSUPERVISED_S, Numbers
@@ -96,8 +98,14 @@ def _player(drives: Sequence[Played], demands: Demands) -> bytes:
     return script(kind, on, numbers, [_judged(each) for each in drives], off_V, V_per_A).encode("utf-8")
 
 
-def elements_player(drives: Mapping[str, Sequence[Played]], demands: Mapping[str, Demands]) -> bytes:
-    """The player of several elements by name, whose drives of one icon are in one file: zones of a TCS II in order."""
+def elements_player(
+    drives: Mapping[str, Sequence[Played]], demands: Mapping[str, Demands], largest_offset_s: float | None = None
+) -> bytes:
+    """The player of several elements by name, whose drives of one icon are in one file: zones of a TCS II in order.
+
+    All drives of an icon last to its end, since courses are expected for so long. `largest_offset_s`: how far apart the
+    verdict lets elements begin, in s; None: at will.
+    """
     lines = {name: _line(own[0].delivery) for name, own in drives.items()}
     (kind, on, *_), *_ = lines.values()
     is_closed = not any(V_per_A for *_, V_per_A in lines.values())
@@ -110,6 +118,7 @@ def elements_player(drives: Mapping[str, Sequence[Played]], demands: Mapping[str
         {name: [_judged(each) for each in own] for name, own in drives.items()},
         {name: off_V for name, (_, _, off_V, _) in lines.items()},
         {name: V_per_A for name, (*_, V_per_A) in lines.items()},
+        min(APART_AT_MOST_S, math.inf if largest_offset_s is None else largest_offset_s),
     ).encode("utf-8")
 
 
