@@ -66,8 +66,9 @@ class ElementsGuard(Guard):
     def _begin(self, line: Line, sensors: Any, plan: Iterator[float], pause_s: float) -> None:
         given: dict[str, Callable[[], float]] = {}
         for kind, readings in zip((FIRST, SECOND), sensors, strict=True):
-            if readings and set(readings) != set(self._elements()):
-                raise Refused(f"give a {kind} for each of {', '.join(self._elements())}, and for nothing else")
+            names = set(readings) if isinstance(readings, Mapping) else None
+            if readings is not None and names != set(self._elements()):
+                raise Refused(f"give a dict with a {kind} for each of {', '.join(self._elements())}, and no other one")
             given |= {f"{kind} of {name}": read for name, read in (readings or {}).items()}
         super()._begin(line, (None, None), plan, pause_s)
         self._sensors |= given

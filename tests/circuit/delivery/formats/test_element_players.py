@@ -20,7 +20,7 @@ from tests.circuit.daq import Daq, DaqError, Task
 from tests.circuit.delivery.formats.world import exported
 from tests.circuit.delivery.independent import Circuit
 from tests.circuit.delivery.replay import Held, Player
-from tests.circuit.live.thermostat import Thermostat
+from tests.circuit.live.thermostat import FAULTS, Thermostat
 from tests.circuit.play.bench import Clock
 from tests.circuit.serial_line import Serial
 from tests.circuit.verdicts import GreenVerdict
@@ -157,6 +157,30 @@ def test_four_controllers_switch_off_by_themselves_where_the_host_is_lost_for_a_
     for each in world.clock.of.values():
         assert not each.is_on
         assert (each.why == "the host was silent") == (silent_s > 1.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", [each for each in FAULTS if each != "silent host"])
+def test_a_fault_of_one_controller_switches_off_both_in_its_time(fault: str, tmp_path: Path) -> None:
+    off_s = []
+    for count in (1, 2):
+        made = channels("wheel", "turn-left", LOOP, count)
+        world = World(made, tmp_path, Thermostats(made))
+        left = world.clock.of["left"]
+
+        def strikes(world: World = world, left: Thermostat = left) -> float:
+            if world.clock.monotonic() - world.began_s > 0.5:
+                left.break_by(fault, 3.0, 0.5)
+                world.clock.hangs = lambda: 0.0
+            return 0.0
+
+        world.clock.hangs = strikes
+        with pytest.raises(RuntimeError):
+            world.player["play"](world.path, *world.clock.functions())
+        assert not any(each.is_on for each in world.clock.of.values())
+        off_s.append(max(each.off_at_s for each in world.clock.of.values()) - world.began_s)
+    # What switches off by itself is seen in the time to react.
+    assert off_s[1] <= off_s[0] + world.player["REACT_S"]
 
 
 class TestCard:
