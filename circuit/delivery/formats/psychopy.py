@@ -9,8 +9,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ...play.element_lines import APART_AT_MOST_S
-from ...play.element_script import element_script
 from ...play.script import COURSE_EVERY_S, JudgedDrive, script
 from ...play.watch import UNSUPERVISED_S, Numbers
 from ...safety.demands import Demands
@@ -106,6 +104,9 @@ def elements_player(
     All drives of an icon last to its end, since courses are expected for so long. `largest_offset_s`: how far apart the
     verdict lets elements begin, in s; None: at will.
     """
+    from ...play.element_lines import APART_AT_MOST_S
+    from ...play.element_script import element_script
+
     lines = {name: _line(own[0].delivery) for name, own in drives.items()}
     (kind, on, *_), *_ = lines.values()
     is_closed = not any(V_per_A for *_, V_per_A in lines.values())
