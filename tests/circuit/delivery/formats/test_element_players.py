@@ -24,7 +24,7 @@ from tests.circuit.live.thermostat import FAULTS, Thermostat
 from tests.circuit.play.bench import Clock
 from tests.circuit.serial_line import Serial
 from tests.circuit.verdicts import GreenVerdict
-from thermicon.circuit import Device, Export, Layout
+from thermicon.circuit import Device, Export, Layout, Rig
 from thermicon.circuit.delivery.export import ExportChannel
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.formats.form import Played
@@ -51,7 +51,9 @@ def channels(layout: str, icon: str, device: str, count: int = 5) -> Channels:
     judge: Any = worst_cases if device == LOOP else lambda drives, _: tuple(map(GreenVerdict, drives))
     made = {}
     for element in Layout.of(layout).elements[:count]:
-        rig = with_sensors(element.rig) if device == LOOP else element.rig
+        # The independent circuit reads the numbers of a module, not its name.
+        rig = Rig.load("fingertip").with_(**{"contact.area_cm2": 0.6}) if layout == "ring-four" else element.rig
+        rig = with_sensors(rig) if device == LOOP else rig
         rig = rig.with_(**{"driver.transconductance_A_per_V": 0.1}) if device == CARD else rig
         track = spatial.tracks.get(element.name, still)
         tail_s = max(0.0, spatial.duration_s - duration_s(track, rig))
