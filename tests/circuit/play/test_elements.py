@@ -3,6 +3,7 @@
 import math
 import re
 import threading
+import warnings
 from collections.abc import Callable
 from contextlib import nullcontext
 from typing import Any
@@ -111,6 +112,14 @@ def test_what_stops_one_element_stops_all_as_quickly_and_nothing_else_does(fault
             assert healthy is None or stopped(names, name, healthy) == (math.inf, "")
 
 
+def test_elements_without_second_sensors_are_told_where_a_cut_off_needs_them() -> None:
+    world = Elements("ab", second_sensor=True)
+    with pytest.warns(UserWarning, match="needs a second sensor: give functions for a, b as second_C"):
+        world.play()
+    with warnings.catch_warnings(action="error"):
+        Elements("ab", second_sensor=True).play(second=True)
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_each_element_has_cut_offs_of_its_own(name: str) -> None:
     for by_K, stops in ((-0.01, False), (0.01, True)):
@@ -209,7 +218,10 @@ class TestPolarity:
         assert {sensor: round(fell_K, 1) for sensor, fell_K in world.guard.fell_K.items()} == {
             f"sensor of {name}": 2.4 for name in "abc"
         }
-        for name, world in (("b", self.wired(swapped="b")), ("a", self.wired(exchanged=True))):
+        both = self.wired()
+        a, c = both.benches["a"], both.benches["c"]
+        both.lines["c"]._test = lambda current_A: (a.test(current_A), c.test(current_A))
+        for name, world in (("b", self.wired(swapped="b")), ("a", self.wired(exchanged=True)), ("c", both)):
             _, why = world.stopped()
             assert why.startswith(f"{name}: under its 0.3 A that must cool")
 

@@ -210,6 +210,13 @@ class TestCard:
             rows, steps_s, _ = plate.play(held, plate.rest(held))
             assert card.off_K(name, np.append(0.0, np.cumsum(steps_s)), rows[:, 0, 2, 0]) < 1e-3
 
+    def test_a_command_that_was_not_judged_for_its_element_is_refused(self, card: World) -> None:
+        of_right = card.player["COMMANDS"]["icon.csv"]["right"]
+        card.player["COMMANDS"]["icon.csv"]["right"] = (of_right[0], of_right[1] - 0.01)
+        with pytest.raises(RuntimeError, match=r"a command of .* judged were"):
+            card.player["play"](card.path)
+        assert not self.daq.out
+
     def test_one_channel_that_stays_on_keeps_no_other_on(self, card: World, monkeypatch: pytest.MonkeyPatch) -> None:
         card.clock.at(132.0, card.player["abort"])
         write = Task.write
