@@ -11,6 +11,7 @@ from .watch import Stopped
 
 APART_AT_MOST_S = 0.1  # assumed: two hands so far apart are under d' 1 in thermicon's own model; nobody has measured it
 OFF_S = 0.1  # for one line to switch off, before the next one is
+HANGS_S = 0.5  # after which one that has not is said to hang
 
 
 class ElementLines:
@@ -66,18 +67,19 @@ class ElementLines:
         """Switch off one after the other; Stopped with the elements that did not, which keep no other one on."""
         self._offs += 1
         failed = dict.fromkeys(self._lines, "it hangs")
-        interrupt = None
+        threads, interrupt = [], None
         for name in self._lines:
             thread = threading.Thread(target=self._put_off, args=(name, failed), daemon=True)
             try:
                 thread.start()
+                threads.append(thread)
+                thread.join(OFF_S)
             except RuntimeError:  # an interpreter that ends starts no thread
                 self._put_off(name, failed)
-                continue
-            try:
-                thread.join(OFF_S)
             except BaseException as problem:
                 interrupt = problem
+        for thread in threads:
+            thread.join(HANGS_S)
         if interrupt is not None:
             raise interrupt
         if failed:
