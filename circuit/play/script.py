@@ -57,7 +57,7 @@ COURSES_C = {{  # the predicted display of each drive
 }}
 '''
 
-TAIL = '''
+NUMBERS = """
 
 def _numbers():
     return Numbers(
@@ -65,7 +65,8 @@ def _numbers():
         CLOSED_LOOP, -math.inf if HELD_LOW_C is None else HELD_LOW_C, math.inf if HELD_HIGH_C is None else HELD_HIGH_C,
         HELD_S, TEST_POLARITY, TEST_CURRENT_A, TEST_S, TEST_FALL_K, OFF_BEFORE_TEST_S, POLARITY_SEEN,
     )
-
+"""
+GUARD = """
 
 _guard = Guard(_numbers, lambda: time.monotonic(), lambda seconds: time.sleep(seconds))
 
@@ -78,7 +79,8 @@ def _rows(drive_file, column):
     times, commands = columns_of(drive_file, judged(drive_file, DRIVES), column)
     check_commands(drive_file, commands, COMMANDS[os.path.basename(drive_file)])
     return times, commands
-
+"""
+CALLS = '''
 
 def keep():
     """Look and feed between plays; call it in the loop of the experiment. It never waits; raises Stopped."""
@@ -192,6 +194,9 @@ def connect():
 LINES: dict[str, tuple[ModuleType, str]] = {"ni": (ni, NI), "function": (function, FUNCTION), "tcs2": (tcs2, TCS2)}
 """The lines that a script may play on, each with its module and its functions for users."""
 
+EVERY = line, watch, look, steps, guard, drives_module
+"""The modules in every script."""
+
 COURSE_EVERY_S = 0.1
 
 
@@ -220,22 +225,35 @@ def script(
     """The script for a line and the drives that were judged; equal inputs give equal text."""
     module, functions = LINES[kind]
     names: dict[str, set[str]] = {"time": set(), "os": set(), "atexit": set()}
-    texts = [
-        _parted(inspect.getsource(each), names) for each in (line, watch, look, steps, guard, drives_module, module)
-    ]
+    texts = [parted(inspect.getsource(each), names) for each in (*EVERY, module)]
     top = {"ni": f'CHANNEL = "Dev1/ao0"\nOFF_V = {off_V!r}\nV_PER_A = {V_per_A!r}\n', "tcs2": 'PORT = "COM3"\n'}
+    digests = {each.file: repr(each.sha256) for each in drives}
+    commands = {each.file: repr(each.commands) for each in drives}
+    courses = {each.file: levels(each.course_C) for each in drives}
+    top_text = head(on, numbers, names, digests, commands, courses) + top.get(kind, "")
+    return "\n\n".join([top_text, *texts]) + NUMBERS + GUARD + CALLS + functions
+
+
+def head(
+    on: str,
+    numbers: Numbers,
+    names: Mapping[str, set[str]],
+    digests: Mapping[str, str],
+    commands: Mapping[str, str],
+    courses: Mapping[str, str],
+) -> str:
+    """The top of a script: its numbers, and what it knows of each drive file."""
     held = (numbers.held_low_C, numbers.held_high_C, numbers.held_s) if numbers.held_s is not None else (None,) * 3
-    head = HEAD.format(
+    return HEAD.format(
         on=on,
-        imports=_imports(names),
+        imports=imports(names),
         held=", ".join(map(repr, held)),
-        digests=_table({each.file: repr(each.sha256) for each in drives}),
-        commands=_table({each.file: repr(each.commands) for each in drives}),
-        courses=_table({each.file: _levels(each.course_C) for each in drives}),
+        digests=table(digests),
+        commands=table(commands),
+        courses=table(courses),
         every_s=COURSE_EVERY_S,
         **numbers._asdict(),
     )
-    return "\n\n".join([head + top.get(kind, ""), *texts]) + TAIL + functions
 
 
 def board_script() -> str:
@@ -243,19 +261,19 @@ def board_script() -> str:
     from . import board, logged_line
 
     names: dict[str, set[str]] = {}
-    texts = [_parted(inspect.getsource(each), names) for each in (line, logged_line, board)]
+    texts = [parted(inspect.getsource(each), names) for each in (line, logged_line, board)]
     texts = [*map(inspect.getsource, (Refused, Stopped)), *texts]
-    return BOARD_HEAD.format(imports=_imports(names)) + "\n\n".join(texts)
+    return BOARD_HEAD.format(imports=imports(names)) + "\n\n".join(texts)
 
 
-def _imports(names: Mapping[str, set[str]]) -> str:
+def imports(names: Mapping[str, set[str]]) -> str:
     """The imports of modules, and of names from them."""
     whole = [f"import {name}" for name, of in sorted(names.items()) if not of]
     parts = [f"from {name} import {', '.join(sorted(of))}" for name, of in sorted(names.items()) if of]
     return "\n".join(whole + parts)
 
 
-def _parted(source: str, names: dict[str, set[str]]) -> str:
+def parted(source: str, names: dict[str, set[str]]) -> str:
     """The text of a module without docstring and imports; those from elsewhere are added to `names`."""
     body = ast.parse(source).body
     head = [node for node in body if isinstance(node, ast.Import | ast.ImportFrom | ast.If)]
@@ -268,12 +286,12 @@ def _parted(source: str, names: dict[str, set[str]]) -> str:
     return "\n".join(source.splitlines()[head[-1].end_lineno :]).strip("\n") + "\n"
 
 
-def _table(values: Mapping[str, str]) -> str:
+def table(values: Mapping[str, str]) -> str:
     """The rows of a table by drive file."""
     return "\n".join(f"    {json.dumps(name)}: {value}," for name, value in values.items())
 
 
-def _levels(course_C: Sequence[float]) -> str:
+def levels(course_C: Sequence[float]) -> str:
     """The predicted display in lines that an editor shows."""
     levels = textwrap.fill(", ".join(f"{at_C:.2f}" for at_C in course_C), 112)
     return f"(\n{textwrap.indent(levels, ' ' * 8)},\n    )"

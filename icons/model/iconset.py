@@ -171,8 +171,9 @@ class IconSet(Drawn):
         """Raise SeveralElements, with a cure, for a set whose icons are on several elements."""
         if self.spatial:
             raise SeveralElements(
-                f"{self.name or 'this set'} is for several elements ({', '.join(self.context.elements)}), which only check, "
-                'convert, simulate, rank, export and pictures take yet; for one element, leave out "elements" and "on"'
+                f"{self.name or 'this set'} is for several elements ({', '.join(self.context.elements)}), which only "
+                "check, convert, simulate, "
+                'rank, export and pictures take yet; for one element, leave out "elements" and "on"'
             )
 
     @property

@@ -28,11 +28,13 @@ class Task:
     - `with` closes at its end; a closed task answers -200088 to everything;
     - a voltage outside `min_val` … `max_val` of its channel fails with -200077, and nothing of the write is put out;
     - a write starts a task only with `auto_start`; a buffered one needs a sample clock for as many samples;
-    - a channel holds the last voltage that was put out, whatever becomes of the task.
+    - a channel holds the last voltage that was put out, whatever becomes of the task;
+    - a device runs one clocked task for its outputs, and no other one beside it (NI knowledge base, simultaneous tasks;
+      cDAQ-9181 manual, 3-13): several channels on one clock are one task, which takes a list for each.
     """
 
     def __init__(self, daq: Daq) -> None:
-        self._daq, self._channel, self._ends_s = daq, "", 0.0
+        self._daq, self._channels, self._ends_s = daq, list[str](), 0.0
         self._range_V, self._clocked = (-10.0, 10.0), (0.0, 0)
         self.is_closed = self.is_started = False
         self.ao_channels = types.SimpleNamespace(add_ao_voltage_chan=self._add)
@@ -52,7 +54,8 @@ class Task:
 
     def _add(self, channel: str, min_val: float = -10.0, max_val: float = 10.0) -> None:
         self._check()
-        self._channel, self._range_V = channel, (min_val, max_val)
+        self._channels.append(channel)
+        self._range_V = min_val, max_val
 
     def _sample(self, rate: float, sample_mode: str, samps_per_chan: int) -> None:
         self._check()
@@ -62,26 +65,35 @@ class Task:
 
     def start(self) -> None:
         self._check()
-        if not self._channel:
+        if not self._channels:
             raise DaqError(NO_CHANNEL, "The specified operation cannot be performed without channels in the task.")
-        if any(task.is_started and task._channel == self._channel for task in self._daq.tasks if task is not self):
-            raise DaqError(RESERVED, f"The specified resource is reserved: {self._channel}.")
+        for task in [task for task in self._daq.tasks if task is not self and task.is_started]:
+            is_clocked = bool(task._clocked[1] or self._clocked[1])
+            if self._taken(is_clocked) & task._taken(is_clocked):
+                raise DaqError(RESERVED, f"The specified resource is reserved: {', '.join(self._channels)}.")
         self.is_started = True
+
+    def _taken(self, is_clocked: bool) -> set[str]:
+        return {channel.partition("/")[0] if is_clocked else channel for channel in self._channels}
 
     def write(self, volts: Any, auto_start: bool = False) -> int:
         self._check()
-        block = volts if isinstance(volts, list) else [volts]
+        of_channels = volts if len(self._channels) > 1 else [volts]
+        assert len(of_channels) == len(self._channels), "a task takes a list for each of its channels"
         low_V, high_V = self._range_V
-        if not all(low_V <= at_V <= high_V for at_V in block):
-            raise DaqError(OUTSIDE, f"Requested value is not between {low_V} and {high_V} V.")
-        assert isinstance(volts, list) == bool(self._clocked[1]), "a block needs a sample clock, a voltage has none"
-        assert self._clocked[1] in (0, len(block)), "the clock is for another number of samples"
+        for block in [each if isinstance(each, list) else [each] for each in of_channels]:
+            if not all(low_V <= at_V <= high_V for at_V in block):
+                raise DaqError(OUTSIDE, f"Requested value is not between {low_V} and {high_V} V.")
+            assert self._clocked[1] in (0, len(block)), "the clock is for another number of samples"
+        clocked = isinstance(of_channels[0], list)
+        assert clocked == bool(self._clocked[1]), "a block needs a sample clock, a voltage has none"
         if auto_start and not self.is_started:
             self.start()
         assert self.is_started, "a write without auto_start puts nothing out"
         self._daq.out.append(volts)
-        if isinstance(volts, list):
-            self._ends_s = self._daq.ends = self._daq.monotonic() + len(volts) / self._clocked[0]
+        self._daq.holds |= dict(zip(self._channels, of_channels, strict=True))
+        if clocked:
+            self._ends_s = self._daq.ends = self._daq.monotonic() + self._clocked[1] / self._clocked[0]
         return len(block)
 
     def is_task_done(self) -> bool:
@@ -101,7 +113,7 @@ class Task:
 
 
 class Daq(types.ModuleType):
-    """The module; `out` is what was put out, in order, `stopped` how many blocks were ended before their time."""
+    """The module; `out` is what was put out, `holds` by channel, `stopped` how many blocks were ended too early."""
 
     def __init__(self, monotonic: Callable[[], float]) -> None:
         super().__init__("nidaqmx")
@@ -110,6 +122,7 @@ class Daq(types.ModuleType):
         self.DaqError = DaqError
         self.rate, self.count = 0.0, 0
         self.out: list[Any] = []
+        self.holds: dict[str, Any] = {}
         self.tasks: list[Task] = []
 
     def Task(self) -> Task:

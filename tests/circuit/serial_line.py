@@ -6,17 +6,22 @@ import threading
 from collections.abc import Callable
 
 BYTES_PER_S = 11_520.0
-DIGITS = {b"N": 3, b"Om": 3, b"Ue": 5}
+DIGITS = {b"N": 3, b"Om": 3, b"Ue": 5, b"S": 5}
+BEFORE = b"Uw11111001100450"
 
 
 class Thermode:
-    """A TCS II by its list of commands (pytcsii of mpcoll): N, Om, Ue and Uw are followed by digits, L and A are alone.
+    """A TCS II by its list of commands (pytcsii of mpcoll): N, Om, S, Ue and Uw are followed by digits, L, A are alone.
 
-    A command that was begun takes what follows as its digits, whatever that is: an `A` among them aborts nothing.
+    A command that was begun takes what follows as its digits, whatever that is: an `A` among them aborts nothing. The
+    masks of S (areas that stimulate, at first all), Uw (whose profile it is) and Ue (whose profile is played, at first
+    none) are of the zones 1 to 5; a zone that stimulates without a profile plays what was set before.
     """
 
     def __init__(self, commands: list[bytes]) -> None:
         self.commands, self._begun, self.is_playing, self.garbled = commands, b"", False, list[bytes]()
+        self.masks, self.profiles = {b"S": b"11111", b"Ue": b"00000"}, dict.fromkeys(range(5), BEFORE)
+        self.started: dict[int, bytes] = {}
 
     def take(self, data: bytes) -> None:
         for place in range(len(data)):
@@ -25,7 +30,15 @@ class Thermode:
                 command, self._begun = self._begun, b""
                 self.commands.append(command)
                 self.is_playing = command == b"L" or (self.is_playing and command != b"A")
-                if not command.lstrip(b"NOmUweLA").isdigit() and command not in (b"L", b"A"):
+                if command[:2] == b"Uw":
+                    self.profiles |= {zone: command for zone, bit in enumerate(command[2:7]) if bit == ord("1")}
+                elif command[:-5] in self.masks:
+                    self.masks[command[:-5]] = command[-5:]
+                elif command == b"L":
+                    zones = [zone for zone in range(5) if self.masks[b"S"][zone : zone + 1] == b"1"]
+                    played = {zone: self.masks[b"Ue"][zone : zone + 1] == b"1" for zone in zones}
+                    self.started = {zone: self.profiles[zone] if played[zone] else BEFORE for zone in zones}
+                if not command.lstrip(b"NOmUweLAS").isdigit() and command not in (b"L", b"A"):
                     self.garbled.append(command)
 
     def _is_whole(self) -> bool:
@@ -34,7 +47,7 @@ class Thermode:
             return True
         if begun[:2] == b"Uw":
             return len(begun) >= 10 and len(begun) == 10 + 6 * int(begun[7:10])
-        name = begun[:1] if begun[:1] == b"N" else begun[:2]
+        name = begun[:1] if begun[:1] in (b"N", b"S") else begun[:2]
         return len(begun) == len(name) + DIGITS.get(name, 99)
 
 

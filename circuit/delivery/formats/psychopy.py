@@ -3,8 +3,9 @@
 import csv
 import hashlib
 import io
+import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -90,18 +91,50 @@ def _row(played: Played) -> dict[str, str]:
 def _player(drives: Sequence[Played], demands: Demands) -> bytes:
     """The player for what the device takes: NI volts, a thermode's commands, or set-points sent one by one."""
     delivery = drives[0].delivery
-    driven_by, device = delivery.device.driven_by, delivery.device
-    kind, on, off_V = "ni", "on an NI analogue output", 0.0
-    if driven_by == "set-points":
-        kind, on = "tcs2", "on a QST.Lab TCS II"
-    elif driven_by == "temperatures" and not has_voltage(device):
-        kind, on = "function", "on a temperature controller"
-    elif driven_by == "temperatures":  # a controller takes 0 V for a temperature, so that off is the rest
-        on = "as set-points of a temperature controller on an NI analogue output"
-        off_V = float(volts_of(device, samples_of(delivery).command[:1])[0])
-    numbers = guard_numbers(demands, closed_loop=driven_by != "volts")
-    V_per_A = command_for(delivery, 1.0) if driven_by == "volts" else 0.0
+    kind, on, off_V, V_per_A = _line(delivery)
+    numbers = guard_numbers(demands, closed_loop=delivery.device.driven_by != "volts")
     return script(kind, on, numbers, [_judged(each) for each in drives], off_V, V_per_A).encode("utf-8")
+
+
+def elements_player(
+    drives: Mapping[str, Sequence[Played]], demands: Mapping[str, Demands], largest_offset_s: float | None = None
+) -> bytes:
+    """The player of several elements by name, whose drives of one icon are in one file: zones of a TCS II in order.
+
+    All drives of an icon last to its end, since courses are expected for so long. `largest_offset_s`: how far apart the
+    verdict lets elements begin, in s; None: at will.
+    """
+    from ...play.element_lines import APART_AT_MOST_S
+    from ...play.element_script import element_script
+
+    lines = {name: _line(own[0].delivery) for name, own in drives.items()}
+    (kind, on, *_), *_ = lines.values()
+    is_closed = not any(V_per_A for *_, V_per_A in lines.values())
+    strictest = guard_numbers(Demands.strictest(list(demands.values())), closed_loop=is_closed)
+    return element_script(
+        kind,
+        f"of {', '.join(drives)} {on}",
+        strictest,
+        {name: guard_numbers(own, closed_loop=is_closed) for name, own in demands.items()},
+        {name: [_judged(each) for each in own] for name, own in drives.items()},
+        {name: off_V for name, (_, _, off_V, _) in lines.items()},
+        {name: V_per_A for name, (*_, V_per_A) in lines.items()},
+        min(APART_AT_MOST_S, math.inf if largest_offset_s is None else largest_offset_s),
+    ).encode("utf-8")
+
+
+def _line(delivery: DeliveredDrive) -> tuple[str, str, float, float]:
+    """The line of a device, with what it is in words; its V without power, and for 1 A."""
+    driven_by, device = delivery.device.driven_by, delivery.device
+    if driven_by == "set-points":
+        return "tcs2", "on a QST.Lab TCS II", 0.0, 0.0
+    if driven_by == "volts":
+        return "ni", "on an NI analogue output", 0.0, command_for(delivery, 1.0)
+    if not has_voltage(device):
+        return "function", "on a temperature controller", 0.0, 0.0
+    # A controller takes 0 V for a temperature, so that off is the rest.
+    off_V = float(volts_of(device, samples_of(delivery).command[:1])[0])
+    return "ni", "as set-points of a temperature controller on an NI analogue output", off_V, 0.0
 
 
 def guard_numbers(demands: Demands, *, closed_loop: bool) -> Numbers:
