@@ -66,9 +66,9 @@ def prepare_elements(
     """
     check_pause(pause_s)
     form.check(device)
-    if form.together is None and form.player is not None:
+    if form.player is not None and form.elements_player is None:
         raise FormatError(
-            f"{form.name}: its player plays one element, and one cut-off must stop them all; use csv, tdms, "
+            f"{form.name}: its player plays one element, and one cut-off must stop them all; use psychopy, csv, tdms, "
             "setpoint-csv or tcs2-serial"
         )
     rigs = judged_rigs(tracks.layout, tracks.distinct.values(), device)

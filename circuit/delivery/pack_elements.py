@@ -11,7 +11,7 @@ from ..rig.layout import Layout
 from ..safety.demands import Demands
 from ..safety.whole import Whole
 from .formats import Format, FormatError
-from .formats.form import OneFile
+from .formats.form import OneFile, Played
 from .pack import check_names, digest, sealed, sidecar, sidecar_name, sidecar_text, written
 from .prepare import Prepared
 
@@ -52,10 +52,44 @@ def pack_elements(
             files |= _alone(one, form, told)
         return files
     check_names([one.delivery.icon.name for one in channels[0]], form)
-    for icon, *own in zip(icons, *channels, strict=True):
+    drives = [_written(icon, form, form.together) for icon in zip(*channels, strict=True)]
+    shared = _player(channels, form, drives, whole)
+    for icon, drive, *own in zip(icons, drives, *channels, strict=True):
         told = {"name": icon.name, "text": str(icon), "content_hash": icon.content_hash}
-        files |= _together(own, form, form.together, {**about, "icon": {**told, "control": icon.context.control}})
-    return files
+        known = {**about, "icon": {**told, "control": icon.context.control}}
+        files |= _together(own, form, form.together, known, drive, shared)
+    return {**files, **shared}
+
+
+def _player(
+    channels: Sequence[Sequence[Prepared]], form: Format, drives: Sequence[bytes], whole: Whole
+) -> dict[str, bytes]:
+    """The files of the whole set, where the format has a player."""
+    if form.elements_player is None:
+        return {}
+    played, demands = {}, {}
+    for own in channels:
+        element = own[0].delivery.element
+        demands[element] = Demands.strictest([one.verdict.demands for one in own])
+        played[element] = [
+            Played(
+                one.delivery,
+                form.file_name(one.delivery),
+                sidecar_name(one.delivery.icon.name, form),
+                one.verdict.colour,
+                one.verdict.repeated.recovery_s,
+                one.verdict.repeated.shortest_pause_s,
+                drive,
+            )
+            for one, drive in zip(own, drives, strict=True)
+        ]
+    return form.elements_player(played, demands, whole.offset_s)
+
+
+def _written(icon: Sequence[Prepared], form: Format, together: OneFile) -> bytes:
+    for one in icon:
+        written(one, form)
+    return together.write([one.delivery for one in icon])
 
 
 def _own(one: Prepared) -> Prepared:
@@ -73,14 +107,17 @@ def _alone(one: Prepared, form: Format, about: Mapping[str, object]) -> dict[str
 
 
 def _together(
-    icon: Sequence[Prepared], form: Format, together: OneFile, about: Mapping[str, object]
+    icon: Sequence[Prepared],
+    form: Format,
+    together: OneFile,
+    about: Mapping[str, object],
+    drive: bytes,
+    set_files: Mapping[str, bytes],
 ) -> dict[str, bytes]:
     """The one drive of all elements, and its sidecar."""
-    for one in icon:
-        written(one, form)
     deliveries = [one.delivery for one in icon]
-    drive, first, name = together.write(deliveries), deliveries[0], deliveries[0].icon.name
-    own = [sidecar(one, form, None, _over([one]), drive, {}) for one in icon]
+    first, name = deliveries[0], deliveries[0].icon.name
+    own = [sidecar(one, form, None, _over([one]), drive, set_files) for one in icon]
     shared: dict[str, Any] = {key: value for key, value in own[0].items() if key not in OF_ELEMENT}
     shared["columns"] = [asdict(column) for column in together.columns(deliveries)]
     shared["forced_over"] = _over(icon)

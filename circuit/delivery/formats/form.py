@@ -1,6 +1,6 @@
 """The interface of a drive file format."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from itertools import groupby, pairwise
@@ -77,6 +77,9 @@ class OneFile(NamedTuple):
     channels: Callable[[Sequence[DeliveredDrive]], tuple[object, ...]]
 
 
+ElementsPlayer = Callable[[Mapping[str, Sequence[Played]], Mapping[str, Demands], float | None], dict[str, bytes]]
+
+
 @dataclass(frozen=True, slots=True)
 class Format:
     """One kind of file: what it is called, which devices take it, where its layout is documented, and how to write it.
@@ -87,6 +90,8 @@ class Format:
     `set_files`, from all its drives and what the hardware must prevent; it `holds` some of these demands while it plays
     and `proves` others before it does. `needs` is the package that writes it, `fits` raises FormatError for a device
     that it has no use for. `together`: how one file holds several elements; None: each has a file of its own.
+    `elements_player` gives the files of a set on several elements, from the drives and demands of each by name and the
+    largest offset in s that the verdict allows.
     """
 
     name: str
@@ -108,6 +113,7 @@ class Format:
     needs: str = ""
     fits: Callable[[Device], None] | None = None
     together: OneFile | None = None
+    elements_player: ElementsPlayer | None = None
 
     def __repr__(self) -> str:
         return f"Format({self.name!r}, *{self.suffix}, for {', '.join(self.takes)})"

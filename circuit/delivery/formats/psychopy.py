@@ -17,8 +17,9 @@ from ..delivered_drive import DeliveredDrive
 from ..device import Device
 from ..setpoints import Setpoints
 from .c_array import command_for
-from .form import Format, FormatError, Played, course_C, events_in, samples_of
+from .form import Event, Format, FormatError, OneFile, Played, course_C, events_in, samples_of
 from .tables import CSV, SERIAL, SETPOINT_CSV, has_voltage, volts_of, write_rows
+from .tables import write_together as write_elements
 
 SET_FILES = CONDITIONS, PLAYER = "conditions.csv", "play_icons.py"
 MOST_ROWS = 1_000_000
@@ -54,6 +55,18 @@ def write(delivery: DeliveredDrive) -> bytes:
     return write_rows(delivery, rows)
 
 
+def write_together(deliveries: Sequence[DeliveredDrive]) -> bytes:
+    """Return the drive file of several elements, with a row for each update."""
+    is_serial = _together(deliveries) is SERIAL.together
+    return _together(deliveries).write(deliveries) if is_serial else write_elements(deliveries, True)
+
+
+def _together(deliveries: Sequence[DeliveredDrive]) -> OneFile:
+    together = _drive(deliveries[0]).together
+    assert together is not None
+    return together
+
+
 def fits(device: Device) -> None:
     """Raise FormatError for a sound interface, which the player cannot drive."""
     if device.dc_coupled:
@@ -65,7 +78,12 @@ def fits(device: Device) -> None:
 
 def set_files(drives: Sequence[Played], demands: Demands) -> dict[str, bytes]:
     """Return conditions file and player for drives of one device, with what the hardware must prevent."""
-    found = [_row(each) for each in drives]
+    rows = [_row(each, events_in(each.delivery)) for each in drives]
+    return {CONDITIONS: _conditions(rows), PLAYER: _player(drives, demands)}
+
+
+def _conditions(found: Sequence[Mapping[str, str]]) -> bytes:
+    """The table of conditions, with a column for each event that an icon has."""
     most = max(map(len, found))
     later = [_column(name, k) for k in range(most) for name in MARKED]
     used = {column for row in found for column in row}
@@ -74,15 +92,15 @@ def set_files(drives: Sequence[Played], demands: Demands) -> dict[str, bytes]:
     rows = csv.DictWriter(text, header, restval="", lineterminator="\n")
     rows.writeheader()
     rows.writerows(found)
-    return {CONDITIONS: text.getvalue().encode("utf-8"), PLAYER: _player(drives, demands)}
+    return text.getvalue().encode("utf-8")
 
 
-def _row(played: Played) -> dict[str, str]:
+def _row(played: Played, events: Sequence[Event]) -> dict[str, str]:
     row = {"icon": played.delivery.icon.name, "drive_file": played.file, "sidecar_file": played.sidecar}
     row["safety"] = played.safety
     times: dict[str, float | None] = dict(zip(JUDGED[1:], (played.recovery_s, played.shortest_pause_s), strict=True))
     seen = Counter[str]()
-    for event in events_in(played.delivery):
+    for event in events:
         times["duration_s" if event.name == "end" else _column(event.name, seen[event.name])] = event.time_s
         seen[event.name] += 1
     return row | {column: f"{time:.9g}" for column, time in times.items() if time is not None}
@@ -121,6 +139,17 @@ def elements_player(
         {name: V_per_A for name, (*_, V_per_A) in lines.items()},
         min(APART_AT_MOST_S, math.inf if largest_offset_s is None else largest_offset_s),
     ).encode("utf-8")
+
+
+def elements_set_files(
+    drives: Mapping[str, Sequence[Played]], demands: Mapping[str, Demands], largest_offset_s: float | None
+) -> dict[str, bytes]:
+    """Return conditions file and player for drives of several elements; an event is of the first that has it."""
+    rows = []
+    for icon in zip(*drives.values(), strict=True):
+        events = {(event.time_s, event.name): event for played in icon for event in events_in(played.delivery)}
+        rows.append(_row(icon[0], [events[key] for key in sorted(events)]))
+    return {CONDITIONS: _conditions(rows), PLAYER: elements_player(drives, demands, largest_offset_s)}
 
 
 def _line(delivery: DeliveredDrive) -> tuple[str, str, float, float]:
@@ -204,6 +233,12 @@ FORMAT = Format(
     columns=columns,
     suffix_by=lambda delivery: _drive(delivery).suffix,
     player=set_files,
+    elements_player=elements_set_files,
+    together=OneFile(
+        write_together,
+        lambda deliveries: _together(deliveries).columns(deliveries),
+        lambda deliveries: _together(deliveries).channels(deliveries),
+    ),
     set_files=SET_FILES,
     # A script on a computer that hangs holds no cut-off: it watches, and the hardware has its own.
     holds=("rest_before_first_play_s", "pause_at_least_s"),

@@ -65,10 +65,10 @@ def write_setpoints(delivery: DeliveredDrive) -> bytes:
     return _written([delivery], setpoint_columns(delivery), samples_of(delivery).time_s, [_cells(delivery, rows)])
 
 
-def write_together(deliveries: Sequence[DeliveredDrive]) -> bytes:
+def write_together(deliveries: Sequence[DeliveredDrive], every_update: bool = False) -> bytes:
     """Return the table of several elements on one clock, which has the columns of each."""
     samples = on_one_clock(deliveries)
-    rows = reduce(np.union1d, (each.rows() for each in samples))
+    rows = np.arange(len(samples[0].codes)) if every_update else reduce(np.union1d, (each.rows() for each in samples))
     cells = [_cells(replace(one, played=each), rows) for one, each in zip(deliveries, samples, strict=True)]
     return _written(deliveries, columns_together(deliveries), samples[0].time_s[rows], cells)
 
@@ -231,7 +231,9 @@ def _commands(profiles: Mapping[str, Setpoints]) -> bytes:
         for mask, each in profiles.items()
     ]
     greatest = min(max(levels) + round(ABOVE_K / first.step_K), MOST)
-    commands = [f"N{first.baseline:03d}", f"Om{greatest:03d}", *loaded, f"Ue{_mask(profiles)}", "L"]
+    mask = _mask(profiles)
+    alone = [] if mask == ALL_ZONES else [f"S{mask}"]  # a zone without a profile plays what was set before
+    commands = [f"N{first.baseline:03d}", f"Om{greatest:03d}", *alone, *loaded, f"Ue{mask}", "L"]
     return ("\n".join(commands) + "\n").encode("ascii")
 
 

@@ -24,12 +24,13 @@ from tests.circuit.live.thermostat import FAULTS, Thermostat
 from tests.circuit.play.bench import Clock
 from tests.circuit.serial_line import Serial
 from tests.circuit.verdicts import GreenVerdict
-from thermicon.circuit import Device, Export, Layout, Rig
+from thermicon.circuit import Device, Export, Layout, Rig, export
 from thermicon.circuit.delivery.export import ExportChannel
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.formats.form import Played
 from thermicon.circuit.delivery.formats.psychopy import elements_player
 from thermicon.circuit.delivery.prepare import prepare_set
+from thermicon.circuit.delivery.verify import verify
 from thermicon.circuit.delivery.ways import worst_cases
 from thermicon.circuit.live.ready import with_sensors
 from thermicon.circuit.play.tcs2 import course_of
@@ -285,6 +286,34 @@ def test_exchanged_or_missing_zones_do_not_play(tmp_path: Path) -> None:
         assert not strips.port.commands
     with pytest.raises(ValueError, match="profiles are for the zones 11100"):
         Strips("upward", tmp_path, lambda content: content.replace(b"S11100\n", b""), 3).play(range(3))
+
+
+@pytest.mark.parametrize(("library", "layout", "device"), [("turns", "wheel", LOOP), ("bars", "tcs2-strips", STRIPS)])
+def test_an_exported_folder_plays(library: str, layout: str, device: str, tmp_path: Path) -> None:
+    made = export(library, layout, device, "psychopy", folder=tmp_path)
+    assert verify({path.name: path.read_bytes() for path in tmp_path.iterdir()}).well
+    of = {channel.element: channel for channel in made.channels}
+    clock: Any = Clock() if device == STRIPS else Thermostats(of)
+    port, player = Serial(), dict[str, Any]()
+    exec(compile((tmp_path / "play_icons.py").read_text(), "play_icons.py", "exec"), player)
+    player["atexit"].unregister(player["abort"])
+    player["time"] = clock
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "conditions.csv").read_text())))
+    for place, row in enumerate(rows if device == STRIPS else rows[:1]):
+        drive, traces = str(tmp_path / row["drive_file"]), [each.prepared[place].delivery.trace for each in of.values()]
+        if device == STRIPS:
+            player["prepare"](port, drive)
+            player["play"](port)
+            clock.passes(float(row["duration_s"]) + player["PAUSE_S"])
+            for profile, trace in zip(port.device.started.values(), traces, strict=True):
+                course = np.array(course_of(["N320", profile.decode(), "L"])).T
+                assert np.abs(np.interp(trace.time_s, *course) - trace.target_C).max() < 0.06
+        else:
+            player["play"](drive, *clock.functions())
+            for seen, trace in zip(clock.seen.values(), traces, strict=True):
+                since_s, display_C = np.array(seen).T - np.array([[player["_guard"].began_s], [0.0]])
+                off_K = np.abs(display_C - np.interp(since_s, trace.time_s, trace.display_C))
+                assert off_K[since_s >= 0.0].max() < 0.05
 
 
 def test_a_player_of_one_element_has_nothing_of_several(tmp_path: Path) -> None:
