@@ -28,7 +28,7 @@ Course = tuple[tuple[Statement, ...], float]
 
 
 @dataclass(frozen=True, slots=True)
-class Tracks:
+class DeliveredTracks:
     """What each element of a layout plays of each icon; one that an icon leaves out rests as long."""
 
     layout: Layout
@@ -52,7 +52,7 @@ class Tracks:
 
 
 def prepare_elements(
-    tracks: Tracks,
+    tracks: DeliveredTracks,
     device: Device,
     form: Format,
     *,
@@ -119,7 +119,7 @@ def judged_together(layout: Layout, ready: Sequence[Sequence[Prepared]]) -> Whol
 
 
 def _delivered(
-    tracks: Tracks, rigs: Iterable[Rig], device: Device, step: Callable[[int, int], None] | None
+    tracks: DeliveredTracks, rigs: Iterable[Rig], device: Device, step: Callable[[int, int], None] | None
 ) -> dict[tuple[Rig, Course], DeliveredDrive]:
     """Every distinct track on every distinct rig of a layout as delivered."""
     delivered: dict[tuple[Rig, Course], DeliveredDrive] = {}

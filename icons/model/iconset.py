@@ -172,8 +172,8 @@ class IconSet(Drawn):
         if self.spatial:
             raise SeveralElements(
                 f"{self.name or 'this set'} is for several elements ({', '.join(self.context.elements)}), which only "
-                "check, convert, simulate, "
-                'rank, export and pictures take yet; for one element, leave out "elements" and "on"'
+                "check, convert, simulate, rank, export and pictures take yet; "
+                'for one element, leave out "elements" and "on"'
             )
 
     @property

@@ -121,7 +121,7 @@ def test_order_and_names_of_elements_change_names_and_order_of_columns_only() ->
 
 
 def test_a_set_for_elements_needs_its_layout_and_one_rate() -> None:
-    with pytest.raises(InputError, match="a rig has one element: name a layout"):
+    with pytest.raises(InputError, match="the rig thenar is one element: give a layout that has them, such as wheel"):
         export(spatial(LEFT_OF_TWO), "thenar")
     quick = Rig.load("thenar").with_(**{"driver.update_Hz": 50})
     unlike = Layout((Element(Rig.load("thenar"), "left", (0, 0)), Element(quick, "right", (1, 0))), "w")
