@@ -269,10 +269,10 @@ def export(
             check_export_folder(where, how=CURE)
         judge = worst_cases if force else kept_or_judged
         if several:
-            from .on_elements import Tracks, judged_together, prepare_elements  # not needed for one element
+            from .on_elements import DeliveredTracks, judged_together, prepare_elements  # not needed for one element
 
             about = judge if force else partial(kept_or_judged, about=layout.document)
-            tracks = Tracks(layout, several, tail_s)
+            tracks = DeliveredTracks(layout, several, tail_s)
             ready = prepare_elements(tracks, played, form, judge=about, pause_s=pause_s, step=step)
             channels = [
                 ExportChannel(element.rig, played, each, element.name)
