@@ -19,7 +19,7 @@ def judged(drive_file: str, digests: Mapping[str, str]) -> str:
     content = Path(drive_file).read_bytes()
     if hashlib.sha256(content).hexdigest() != digests[name]:
         raise Refused(f"{drive_file} is not the file that was judged, its digest differs: export it again")
-    return content.decode("ascii")
+    return content.decode("utf-8")
 
 
 def check_commands(drive_file: str, commands: Sequence[float], limits: tuple[float, float]) -> None:

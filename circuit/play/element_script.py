@@ -19,7 +19,7 @@ OF_ELEMENT = (
 ELEMENTS = """ELEMENTS = {{  # and numbers of theirs; sensors, and functions of a controller, are dicts by these names
 {elements}
 }}
-APART_S = {apart_s!r}  # from the first to the last element of a row, at most
+ROW_APART_S = {apart_s!r}  # from the first to the last element of a row, at most
 """
 GUARD = """
 
@@ -55,7 +55,7 @@ FUNCTION_LINES = """
 
 def _line(send, off, test, feed):
     of = [(name, send[name], off[name], (test or {}).get(name), (feed or {}).get(name)) for name in ELEMENTS]
-    return ElementLines({name: FunctionLine(*own) for name, *own in of}, lambda: time.monotonic(), APART_S)
+    return ElementLines({name: FunctionLine(*own) for name, *own in of}, lambda: time.monotonic(), ROW_APART_S)
 """
 TCS2_COURSE = """    corners = course_of(commands)
     check_commands(drive_file, [level_C for _, level_C in corners], COMMANDS[os.path.basename(drive_file)])

@@ -7,6 +7,8 @@ import re
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import combinations
+from math import dist
 from pathlib import Path
 from typing import Literal
 
@@ -25,6 +27,8 @@ from .usual import unusual_values
 NEIGHBOURS = ((0.0, 0.022, 0.14), (0.5, 0.011, 0.07), (1.0, 0.006, 0.04), (2.0, 0.0014, 0.009))
 """Bare skin in mm between two elements, and by how much 1 K of one changes the other, in the mean and in its nearest
 millimetre: solution in two dimensions of skin under elements 7.4 mm wide, after 10 s, by this project."""
+FAR_APART_M = 0.1
+"""From here on, warm and cold on one piece of skin are two: as in the safety gate, which leaves out what is apart."""
 _ELEMENTS = re.compile(rb"(?m)^\s*(\[\[\s*element\s*\]\]|element\s*=)")
 
 
@@ -196,6 +200,10 @@ class Layout:
                 by = {"mean": np.interp(1e3 * gap, at_mm, mean), "near": np.interp(1e3 * gap, at_mm, near)}
                 names = ", ".join(one.name for one in self.elements if one.gap_m == gap)
                 close.append(unusual("close", names=names, gap=1e3 * gap, **by))
+        if self.surfaces == "apart":
+            for a, b in combinations([one for one in self.elements if one.place_m is not None], 2):
+                if (apart_m := dist(a.place_m or (), b.place_m or ())) < FAR_APART_M:
+                    close.append(unusual("beside", names=f"{a.name} and {b.name}", apart=1e3 * apart_m))
         return tuple(each.text for each in (*close, *unusual_values(told, "layout")))
 
     @property

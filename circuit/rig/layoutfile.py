@@ -94,9 +94,11 @@ class LayoutTable(KeyTable):
                 yield f"{each.name}: place_mm is {shape}"
         for sink in (sink for sink in sinks if sink not in {each.sink for each in self.element}):
             yield f"no element is on the sink {sink}; remove it, or name it as sink of an element"
-        places = Counter(tuple(each.place_mm) for each in self.element)
-        if twice := next((place for place, count in places.items() if count > 1), None):
-            here = [each.name for each in self.element if tuple(each.place_mm) == twice]
+        if any(len(each.place_mm) != (2 if self.around_mm is None else 1) for each in self.element):
+            return
+        places = {each.name: tuple(round(1e6 * length) for length in self.point_m(each)) for each in self.element}
+        if twice := next((place for place, count in Counter(places.values()).items() if count > 1), None):
+            here = [name for name, place in places.items() if place == twice]
             yield f"{' and '.join(here)} are at one place; give each a place_mm of its own"
 
     def chain(self, element: ElementTable) -> list[ElementTable]:

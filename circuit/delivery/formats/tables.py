@@ -75,9 +75,13 @@ def write_together(deliveries: Sequence[DeliveredDrive], every_update: bool = Fa
 
 def columns_together(deliveries: Sequence[DeliveredDrive]) -> tuple[Column, ...]:
     """Time, the columns of each element behind its name, event."""
-    all_of = setpoint_columns if deliveries[0].device.kind.regulated else columns
-    own = [(one.element, column) for one in deliveries for column in all_of(one)[1:-1]]
-    return (TIME, *(replace(column, name=f"{element}_{column.name}") for element, column in own), EVENT)
+    return (TIME, *(column for one in deliveries for column in _columns_of(one)), EVENT)
+
+
+def _columns_of(delivery: DeliveredDrive) -> list[Column]:
+    """The columns of one element between time and event, behind its name."""
+    alone = (setpoint_columns if delivery.device.kind.regulated else columns)(delivery)[1:-1]
+    return [replace(column, name=f"{delivery.element}_{column.name}") for column in alone]
 
 
 def _cells(delivery: DeliveredDrive, rows: npt.NDArray[np.intp]) -> Iterable[Sequence[object]]:
@@ -142,8 +146,7 @@ def volts_of(device: Device, display_C: Array) -> Array:
 
 def channels_together(deliveries: Sequence[DeliveredDrive]) -> tuple[object, ...]:
     """The columns of each element."""
-    names = [column.name for column in columns_together(deliveries)]
-    return tuple([name for name in names if name.startswith(f"{one.element}_")] for one in deliveries)
+    return tuple([column.name for column in _columns_of(one)] for one in deliveries)
 
 
 TABLE_TOGETHER = OneFile(write_together, columns_together, channels_together)

@@ -111,6 +111,17 @@ def test_sidecars_hold_elements_the_layout_and_one_clock_and_verify(tmp_path: Pa
 
 
 @pytest.mark.usefixtures("green")
+def test_an_element_has_its_own_columns_only_whatever_others_are_called() -> None:
+    names = ("time", "event")
+    rig = Rig.load("thenar")
+    layout = Layout(tuple(Element(rig, name, (place, 0)) for place, name in enumerate(names)), "w")
+    icons = spatial(f"on all {{ {DIP} }}", elements=", ".join(names))
+    told = json.loads(export(icons, layout, "dac-16").files["x0.json"])
+    for name, each in zip(names, told["elements"], strict=True):
+        assert each["channel"] == [f"{name}_current_A", f"{name}_command_V", f"{name}_code"]
+
+
+@pytest.mark.usefixtures("green")
 def test_order_and_names_of_elements_change_names_and_order_of_columns_only() -> None:
     icons, rig = spatial(LEFT_OF_TWO), Rig.load("thenar")
     turned = Layout((Element(rig, "right", (1.0, 0.0)), Element(rig, "left", (0.0, 0.0))), "w")

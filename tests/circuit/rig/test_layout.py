@@ -159,3 +159,16 @@ def test_numbers_of_a_layout_that_are_not_usual_are_told(tmp_path: Path, change:
     text = OWN.replace(where, f"{where}\n{change}") if "gap" in change else OWN + change
     warnings = Layout.load(file_of(tmp_path, text)).warnings
     assert any(re.search(told, each) for each in warnings) if told else not warnings
+
+
+@pytest.mark.parametrize(("at_mm", "told"), [(99, True), (101, False)])
+def test_elements_that_are_said_to_be_apart_but_near_are_told(tmp_path: Path, at_mm: int, told: bool) -> None:
+    text = OWN.replace('surfaces = "one"', 'surfaces = "apart"').replace("[50, 0]", f"[{at_mm}, 0]")
+    warnings = Layout.load(file_of(tmp_path, text)).warnings
+    assert [f"left and right are {at_mm} mm apart" in each for each in warnings] == [True] * told
+
+
+def test_one_place_of_a_circle_has_many_lengths(tmp_path: Path) -> None:
+    text = OWN.replace('name = "mine"', 'name = "mine"\naround_mm = 60').replace("[0, 0]", "5").replace("[50, 0]", "65")
+    with pytest.raises(InputError, match="left and right are at one place"):
+        Layout.load(file_of(tmp_path, text))

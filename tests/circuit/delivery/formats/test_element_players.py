@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 import csv
+import hashlib
 import io
 import json
 import re
 import sys
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
@@ -33,6 +36,7 @@ from thermicon.circuit.delivery.prepare import prepare_set
 from thermicon.circuit.delivery.verify import verify
 from thermicon.circuit.delivery.ways import worst_cases
 from thermicon.circuit.live.ready import with_sensors
+from thermicon.circuit.play.drives import judged
 from thermicon.circuit.play.tcs2 import course_of
 from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import Icon, load_library
@@ -314,6 +318,22 @@ def test_an_exported_folder_plays(library: str, layout: str, device: str, tmp_pa
                 since_s, display_C = np.array(seen).T - np.array([[player["_guard"].began_s], [0.0]])
                 off_K = np.abs(display_C - np.interp(since_s, trace.time_s, trace.display_C))
                 assert off_K[since_s >= 0.0].max() < 0.05
+
+
+@pytest.mark.parametrize("device", [CARD, STRIPS, LOOP])
+def test_no_number_of_a_script_is_given_twice(device: str) -> None:
+    layout, icons = ("tcs2-strips", "bars") if device == STRIPS else ("wheel", "turns")
+    for files in (exported(device)[0], export(icons, layout, device, "psychopy").files):
+        statements = ast.parse(files["play_icons.py"].decode()).body
+        targets = [target for each in statements if isinstance(each, ast.Assign) for target in each.targets]
+        names = [name.id for target in targets for name in ast.walk(target) if isinstance(name, ast.Name)]
+        assert len(names) == len(set(names)), Counter(names).most_common(1)
+
+
+def test_a_table_with_an_element_in_any_script_is_read(tmp_path: Path) -> None:
+    content = "time_s,links_C,rücken_C\n".encode()
+    (tmp_path / "a.csv").write_bytes(content)
+    assert "rücken_C" in judged(str(tmp_path / "a.csv"), {"a.csv": hashlib.sha256(content).hexdigest()})
 
 
 def test_a_player_of_one_element_has_nothing_of_several(tmp_path: Path) -> None:
