@@ -10,7 +10,7 @@ from .line import Line
 from .watch import Stopped
 
 APART_AT_MOST_S = 0.1  # assumed: two hands so far apart are under d' 1 in thermicon's own model; nobody has measured it
-OFF_S = 0.1  # for one line to switch off, before the next one is
+OFF_S = 0.02  # for one line to switch off, before the next one is: one that hangs must not keep others on
 HANGS_S = 0.5  # after which one that has not is said to hang
 
 

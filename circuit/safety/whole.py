@@ -218,9 +218,9 @@ def _faults(layout: Layout, icons: Icons) -> Iterator[Check]:
     """What one element at its limit, or all at their cut-offs where the host is lost, does to sums and neighbours."""
     names = [element.name for element in layout.elements]
     for place, (what, bound) in enumerate(_supplied(layout)):
-        largest, loads = _most(icons, what), icons[0]
-        for name, own, load in zip(names, largest, loads, strict=True):
-            if (stuck := load.stuck[place]) > own:
+        largest = _most(icons, what)
+        for name, own, loads in zip(names, largest, zip(*icons, strict=True), strict=True):
+            if (stuck := max(load.stuck[place] for load in loads)) > own:
                 way = f"{name} stuck at the limit of its driver"
                 yield _check(bound._replace(severity="soft"), sum(largest) - own + stuck, way)
     warmest, coldest = _most(icons, "warm_C"), [-each for each in _most(icons, "chill_C")]

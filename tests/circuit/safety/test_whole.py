@@ -106,9 +106,10 @@ def test_skin_touched_at_once(area_cm2: float, soft: list[str]) -> None:
 
 @pytest.mark.parametrize(("stuck_A", "colour"), [(1.9, "green"), (2.1, "amber")])
 def test_a_stuck_driver_is_added_to_what_the_others_draw_and_told(stuck_A: float, colour: str) -> None:
-    icons = [[replace(drawing(0, 100, 1.0), stuck=(stuck_A, 0.0)), drawing(0, 100, 1.0)]]
-    whole = judge_whole(layout(supply=Supply(current_limit_A=3.0, power_limit_W=99)), icons)
-    assert whole.colour == colour
+    icons = [[replace(drawing(0, 100, 1.0), stuck=(stuck_A, 0.0)), drawing(0, 100, 1.0)], [IDLE, IDLE]]
+    for order in (icons, icons[::-1]):
+        whole = judge_whole(layout(supply=Supply(current_limit_A=3.0, power_limit_W=99)), order)
+        assert whole.colour == colour
     assert all("a stuck at the limit of its driver" in text for text in whole.cautions)
 
 
