@@ -150,13 +150,13 @@ class Layout:
         """Raise RigError, with a cure, unless the layout has every element of a set; others may idle."""
         own = [element.name for element in self.elements]
         if not set(names) <= set(own):
-            what = f"the rig {self.elements[0].rig.name} is one element"
+            what = f"the rig {self.elements[0].rig.name} is one element: "
             if any(own):
-                what = f"the layout {self.name or 'given'} has {', '.join(own)}"
+                what = f"the layout {self.name or 'given'} has {', '.join(own)}: give elements these names, or "
             shipped = (Layout.load(name) for name in layout_names())
             fits = [each.name for each in shipped if {*names} <= {element.name for element in each.elements}]
             cure = f"give a layout that has them, such as {fits[0]}" if fits else "give the file of a layout with them"
-            raise RigError(f"the icons play on {', '.join(names)}, and {what}: {cure}")
+            raise RigError(f"the icons play on {', '.join(names)}, and {what}{cure}")
 
     @property
     def document(self) -> str:

@@ -85,7 +85,7 @@ class LayoutTable(KeyTable):
             if each.like is not None and each.like not in likes:
                 yield f"{each.name} is like {each.like}, which is not an element; {did_you_mean(each.like, names)}"
             elif len(self.chain(each)) > len(names):
-                yield f"{each.name} is like itself, in a circle; give one of the elements a rig"
+                yield f"{each.name} is like {each.like}, in a circle that has no rig; give one of the elements a rig"
             if each.sink is not None and each.sink not in sinks:
                 cure = did_you_mean(each.sink, sinks) if sinks else "remove its sink, or describe it in the file"
                 yield f"{each.name} is on {each.sink}, which is no [[sink]]; {cure}"

@@ -301,7 +301,10 @@ def test_a_lapse_of_the_layout_file_is_what_the_details_said(cli: Cli, tmp_path:
     ("words", "told"),
     [
         (["turns"], "the rig thenar is one element: give a layout that has them, such as wheel"),
-        (["calls", "--rig", "wheel"], "wheel has left, right: give a layout that has them, such as ring-four"),
+        (
+            ["calls", "--rig", "wheel"],
+            "wheel has left, right: give elements these names, or give a layout that has them, such as ring-four",
+        ),
         (["six-icons", "--rig", "wheel"], "a layout of several elements, and one plays here; give the rig of one"),
         (["bars", "--rig", "tcs2-strips"], 'take elements that are apart (surfaces = "apart"), such as those of wheel'),
         (["turns", "--rig", "wheel", "--set", "contact.area_cm2=4"], "write set = { … } into an element"),
