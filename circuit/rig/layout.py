@@ -188,13 +188,16 @@ class Layout:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences on what is unusual about gaps, sinks and the supply; rigs have warnings of their own."""
+        gaps = [one.gap_m for one in self.elements]
         told = {
-            "element": [{"gap_mm": 1e3 * gap} for gap in dict.fromkeys(one.gap_m for one in self.elements) if gap],
+            "element": [
+                {"gap_mm": 1e3 * gap} if gap and place == gaps.index(gap) else {} for place, gap in enumerate(gaps)
+            ],
             "sink": [sink.model_dump() for sink in self.sinks],
             "supply": {} if self.supply is None else self.supply.model_dump(),
         }
         close = []
-        for gap in dict.fromkeys(one.gap_m for one in self.elements):
+        for gap in dict.fromkeys(gaps):
             if gap is not None and 1e3 * gap < NEIGHBOURS[-1][0]:
                 at_mm, mean, near = zip(*NEIGHBOURS, strict=True)
                 by = {"mean": np.interp(1e3 * gap, at_mm, mean), "near": np.interp(1e3 * gap, at_mm, near)}

@@ -161,6 +161,11 @@ def test_numbers_of_a_layout_that_are_not_usual_are_told(tmp_path: Path, change:
     assert any(re.search(told, each) for each in warnings) if told else not warnings
 
 
+def test_an_unusual_gap_is_told_at_its_element(tmp_path: Path) -> None:
+    text = OWN.replace("place_mm = [50, 0]", "place_mm = [50, 0]\ngap_mm = 0.05")
+    assert any("element.1.gap_mm = 0.05 mm" in each for each in Layout.load(file_of(tmp_path, text)).warnings)
+
+
 @pytest.mark.parametrize(("at_mm", "told"), [(99, True), (101, False)])
 def test_elements_that_are_said_to_be_apart_but_near_are_told(tmp_path: Path, at_mm: int, told: bool) -> None:
     text = OWN.replace('surfaces = "one"', 'surfaces = "apart"').replace("[50, 0]", f"[{at_mm}, 0]")
