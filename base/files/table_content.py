@@ -74,7 +74,7 @@ def laid_out(text: str, layout: TableLayout, fault: Fault, example: str, most_ro
     elif lacking:
         content.line = 0
         content.unnamed = f"rows have {layout.width} cells, where the line of names has {len(layout.names)}"
-        content.unnamed += DECIMALS * (layout.mark == "," and "." not in "".join(rows[0]))
+        content.unnamed += DECIMALS * (layout.mark == "," and not any("." in cell for row in rows[:1] for cell in row))
     return content
 
 

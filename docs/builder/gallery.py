@@ -37,7 +37,7 @@ def _set(entry: Any, icons: IconSet, kept: Path | None, write: Write) -> Iterato
     yield f"## {entry.name}\n\n{icons.title}. {entry.icons} icon{'s' * (entry.icons != 1)}; {entry.source}.\n"
     write(f"gallery/{entry.name}.png", png(icons.plot().figure))
     yield f"![Courses of the icons of {entry.name}](gallery/{entry.name}.png)\n"
-    if kept is not None and entry.icons > 1:
+    if kept is not None and entry.icons > 1 and not icons.spatial:  # of which no one rig tells what people feel
         own = kept / entry.name
         if not (own / "confusions.png").is_file():
             _predict(icons, own)

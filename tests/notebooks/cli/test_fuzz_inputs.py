@@ -138,6 +138,14 @@ def test_a_handful_of_damaged_inputs(tmp_path: Path) -> None:
     assert refused > 20
 
 
+def test_a_table_of_which_no_row_is_left_is_refused(tmp_path: Path) -> None:
+    data = b"time_s,current_A\n0,0.1,\n,02\xef\xbb\xbf\ntime_s,current_A\n0,0.1,"
+    for kind in (kind for kind in KINDS.values() if kind.file == "a.csv"):
+        with pytest.raises(Exception, match=r"a\.csv") as refusal:
+            read(data, kind, tmp_path)
+        assert is_ours(refusal.value), (kind, refusal.value)
+
+
 @pytest.mark.parametrize("name", [name for name, kind in KINDS.items() if kind.command])
 def test_a_damaged_file_ends_its_command_with_one_message(
     cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
