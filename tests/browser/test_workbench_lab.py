@@ -108,6 +108,7 @@ def test_a_laptop_shows_curves_and_errors_without_scrolling_and_four_sliders_in_
     page.get_by_role("button", name="Pin", exact=True).click()
     page.locator(".thermicon-bar select").select_option("fingertip")
     expect(page.locator(".tm-sides tbody tr")).to_have_count(2)
+    expect(page.locator(".tm-sides tbody tr").last).to_contain_text("cold-to-warm, fingertip")
     for width in (1280, 900, 1920):
         page.set_viewport_size({"width": width, "height": 800})
         page.wait_for_timeout(500)
