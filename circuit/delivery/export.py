@@ -13,7 +13,7 @@ from thermicon.base.files.atomic import OutputError
 from thermicon.base.files.inputs import InputError
 from thermicon.base.words.number_text import count_of
 from thermicon.icons import IconSet, SpatialIcon
-from thermicon.icons.files.shipped import Icons, by_name, spatial_of
+from thermicon.icons.files.shipped import Icons, by_name, read_cue, spatial_of
 from thermicon.icons.model.iconset import Entry
 
 from ..rig.layout import AnyLayout, Layout
@@ -252,7 +252,8 @@ def export(
     """
     form = load_format(format) if isinstance(format, str) else format
     played = device if isinstance(device, Device) else Device.load(device or form.device)
-    given = icons if isinstance(icons, IconSet | Entry | str | Path) else tuple(icons)
+    whole = read_cue(icons) if isinstance(icons, str | Path) else icons
+    given = whole if isinstance(whole, IconSet | Entry) else tuple(whole)
     several = spatial_of(given)
     chosen = () if several else tuple(by_name(given).values())
     if not (several or chosen):

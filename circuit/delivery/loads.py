@@ -26,7 +26,10 @@ def loads_of(channels: Sequence[Sequence[Prepared]]) -> Icons:
     known: dict[int, Load] = {}
     icons = []
     for icon in zip(*channels, strict=True):
-        loads = [known.setdefault(id(one.verdict), known.get(id(one.verdict)) or load_of(one)) for one in icon]
+        for one in icon:
+            if id(one.verdict) not in known:
+                known[id(one.verdict)] = load_of(one)
+        loads = [known[id(one.verdict)] for one in icon]
         rows = max(len(load.warm_C) for load in loads)
         icons.append([_until(load, rows) for load in loads])
     return icons

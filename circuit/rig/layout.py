@@ -16,6 +16,7 @@ import numpy as np
 
 from thermicon.base.checks.arguments import checked
 from thermicon.base.files.inputs import named_text, shipped_names
+from thermicon.base.files.records import shipped_records
 from thermicon.base.words.clean_text import name_fault
 
 from .faults import unusual
@@ -27,8 +28,6 @@ from .usual import unusual_values
 NEIGHBOURS = ((0.0, 0.022, 0.14), (0.5, 0.011, 0.07), (1.0, 0.006, 0.04), (2.0, 0.0014, 0.009))
 """Bare skin in mm between two elements, and by how much 1 K of one changes the other, in the mean and in its nearest
 millimetre: solution in two dimensions of skin under elements 7.4 mm wide, after 10 s, by this project."""
-FAR_APART_M = 0.1
-"""From here on, warm and cold on one piece of skin are two: as in the safety gate, which leaves out what is apart."""
 _ELEMENTS = re.compile(rb"(?m)^\s*(\[\[\s*element\s*\]\]|element\s*=)")
 
 
@@ -186,6 +185,13 @@ class Layout:
         return "\n".join(f"# {', '.join(named)}\n{rig.toml}" for rig, named in names.items())
 
     @property
+    def near(self) -> tuple[tuple[int, int], ...]:
+        """Places of any two elements between which warm and cold are one; who has no place is taken at the origin."""
+        limit = shipped_records("whole-limits.toml", "severity", "cold_C").one("distance of opposite qualities").central
+        at_m = [element.place_m or (0.0, 0.0) for element in self.elements]
+        return tuple((a, b) for a, b in combinations(range(len(at_m)), 2) if dist(at_m[a], at_m[b]) < limit)
+
+    @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences on what is unusual about gaps, sinks and the supply; rigs have warnings of their own."""
         gaps = [one.gap_m for one in self.elements]
@@ -204,9 +210,10 @@ class Layout:
                 names = ", ".join(one.name for one in self.elements if one.gap_m == gap)
                 close.append(unusual("close", names=names, gap=1e3 * gap, **by))
         if self.surfaces == "apart":
-            for a, b in combinations([one for one in self.elements if one.place_m is not None], 2):
-                if (apart_m := dist(a.place_m or (), b.place_m or ())) < FAR_APART_M:
-                    close.append(unusual("beside", names=f"{a.name} and {b.name}", apart=1e3 * apart_m))
+            for one, other in ((self.elements[a], self.elements[b]) for a, b in self.near):
+                if one.place_m is not None and other.place_m is not None:
+                    apart_mm = 1e3 * dist(one.place_m, other.place_m)
+                    close.append(unusual("beside", names=f"{one.name} and {other.name}", apart=apart_mm))
         return tuple(each.text for each in (*close, *unusual_values(told, "layout")))
 
     @property

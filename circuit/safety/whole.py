@@ -3,16 +3,15 @@
 What is drawn from one supply is the largest of each element, added, whatever their clocks do; only where that is too
 much it is the sum on one clock, and then the hardware must have one. So it is with warm and cold elements near each
 other on one piece of skin. A single fault takes one element to its limit, or all where the host is lost; it is cut off
-after a moment, so that what it does to sums and neighbours is told and does not refuse. A channel that is late changes
+after a moment, so what it does to sums and neighbours is reported and refuses nothing. A channel that is late changes
 no element, only sums and neighbours, which is what an offset is allowed for.
 """
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from math import dist, inf, nan
+from math import inf, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -173,12 +172,7 @@ def _near(layout: Layout) -> list[tuple[int, int]]:
     """Places of a warm and a cold element that are near each other on one piece of skin."""
     if layout.surfaces == "apart":
         return []
-    near_m, places = _table().one("distance of opposite qualities").central, [one.place_m for one in layout.elements]
-    return [
-        (a, b)
-        for a, b in itertools.permutations(range(len(places)), 2)
-        if dist(places[a] or (0.0, 0.0), places[b] or (0.0, 0.0)) < near_m
-    ]
+    return [pair for a, b in layout.near for pair in ((a, b), (b, a))]
 
 
 def _opposite(layout: Layout, icons: Icons) -> Iterator[tuple[Check, float | None]]:

@@ -167,12 +167,11 @@ def icons_of(icons: Icons) -> tuple[Icon, ...]:
     return tuple(found)
 
 
-def spatial_of(icons: Icons) -> tuple[SpatialIcon, ...]:
-    """The icons on several elements of what `set_of` takes; none where they are on one."""
-    whole = read_cue(icons) if isinstance(icons, str | Path) else icons
-    if isinstance(whole, IconSet):
-        return whole.spatial
-    given = (whole,) if isinstance(whole, Entry) else tuple(whole)
+def spatial_of(icons: IconSet | Entry | tuple[Entry, ...]) -> tuple[SpatialIcon, ...]:
+    """The icons on several elements of a set or of icons; none where they are on one."""
+    if isinstance(icons, IconSet):
+        return icons.spatial
+    given = (icons,) if isinstance(icons, Entry) else icons
     return IconSet.of(given).spatial if given and all(isinstance(each, SpatialIcon) for each in given) else ()
 
 

@@ -65,7 +65,7 @@ def play_command(
 
     if folder is not None:
         check_empty(folder)
-    statements_of(stated or [])  # so that a typing error is told before all is judged
+    statements_of(stated or [])  # a typing error is reported before all is judged
     slow = is_watched()
     try:
         made, names = exported(file, rig, icon, order, pause, whole=port is not None)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from thermicon.icons import Family, Icon, load_library
-from thermicon.icons.files.shipped import names_on_one_element
+from thermicon.icons import Family, Icon, library
 
 from ..editing.cue_check import read_text
 from ..timeline.frames import DRAGGED_POINTS, CanvasFrame, frame_of
@@ -40,9 +39,11 @@ def reel_of(design: DesignModel) -> tuple[list[CanvasFrame], str]:
 def shipped_texts() -> dict[str, dict[str, str]]:
     """Texts of the icons of shipped sets, by set and name; a large family is one text."""
     found = {}
-    for name in names_on_one_element():
+    for name, icons in library().items():
+        if icons.spatial:
+            continue
         entries: list[Icon | Family] = []
-        for entry in load_library(name).entries:
+        for entry in icons.entries:
             entries += entry if isinstance(entry, Family) and len(entry) <= MOST_MEMBERS else [entry]
         texts = ((entry.name, str(entry)) for entry in entries)
         found[name] = {own: text[text.index("\nicon ") + 1 :].rstrip() for own, text in texts}

@@ -1,6 +1,6 @@
 """Assumptions about place in a ranking of icons on elements apart, which are none.
 
-What else people do meanwhile costs a lapse, which is told beside the prediction.
+What else people do meanwhile costs a lapse, which is reported beside the prediction.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Place:
 
     @classmethod
     def of(cls, ranking: Ranking) -> Place | None:
-        """That of a ranking; None on one element. Costs are told of two elements whose layout names no lapse."""
+        """That of a ranking; None on one element. Costs are reported for two elements whose layout names no lapse."""
         if not ranking.elements:
             return None
         layout, costs = ranking.job.layout, list[TaskCost]()

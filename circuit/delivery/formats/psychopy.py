@@ -57,8 +57,8 @@ def write(delivery: DeliveredDrive) -> bytes:
 
 def write_together(deliveries: Sequence[DeliveredDrive]) -> bytes:
     """Return the drive file of several elements, with a row for each update."""
-    is_serial = _together(deliveries) is SERIAL.together
-    return _together(deliveries).write(deliveries) if is_serial else write_elements(deliveries, True)
+    together = _together(deliveries)
+    return together.write(deliveries) if together is SERIAL.together else write_elements(deliveries, True)
 
 
 def _together(deliveries: Sequence[DeliveredDrive]) -> OneFile:
