@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from threading import RLock
 from typing import Any
 
 from thermicon.circuit import Rig
@@ -22,6 +23,8 @@ from .versions import Version
 
 Message = Mapping[str, Any]
 MOST_LETTERS = 1_000_000
+ONE_AT_A_TIME = RLock()
+"""Held by each action of a page: Jupyter calls handlers in two threads, that of the cells and one of the widgets."""
 
 
 class DesignModel:

@@ -12,7 +12,7 @@ from thermicon.circuit import Rig
 
 from ..timeline.frames import CanvasFrame
 from .canvas import Canvas
-from .design_model import DesignModel
+from .design_model import ONE_AT_A_TIME, DesignModel
 from .knobs import Knob, knobs_of
 from .reel import reel_of, shipped_texts
 
@@ -50,6 +50,7 @@ class DesignView:
             "reel": lambda _: self._send_reel(),
             "palette": lambda _: self.canvas.send({"type": "palette", "sets": shipped_texts()}),
         }
+        self.stop_device: Callable[[], None] = lambda: None  # waits for no other action of the page
         self.reset = widgets.Button(description="Reset", tooltip="all sliders back to the rig's values")
         self.reset.layout = widgets.Layout(width="68px", height="26px", margin="0")
         self.reset.on_click(self._reset)
@@ -80,13 +81,16 @@ class DesignView:
         self.knobs.children = (*(self._knob(knob) for knob in knobs_of(self.design.nominal)), self.reset)
 
     def _receive(self, message: Mapping[str, Any]) -> None:
-        if (act := self.on_page.get(str(message.get("type")))) is not None:
-            act(message)
-            self.send(self.design.receive({"type": "hello", "seq": message.get("seq", 0)}))
+        if message.get("type") == "stop device":
+            self.stop_device()
             return
-        self.send(self.design.receive(message))
-        if message.get("type") == "swap":
-            self._make_knobs()
+        with ONE_AT_A_TIME:
+            if (act := self.on_page.get(str(message.get("type")))) is not None:
+                act(message)
+                message = {"type": "hello", "seq": message.get("seq", 0)}
+            self.send(self.design.receive(message))
+            if message.get("type") == "swap":
+                self._make_knobs()
 
     def _send_reel(self) -> None:
         """Send the curves of all icons, which the page plays one after another."""
@@ -113,12 +117,14 @@ class DesignView:
         return widgets.VBox([label, made]).add_class("thermicon-knob")
 
     def _turned(self, key: str, value: float) -> None:
-        self.send(self.design.turn({key: value}))
-        self._tell(next(knob for knob in knobs_of(self.design.nominal) if knob.key == key))
+        with ONE_AT_A_TIME:
+            self.send(self.design.turn({key: value}))
+            self._tell(next(knob for knob in knobs_of(self.design.nominal) if knob.key == key))
 
     def _reset(self, _: widgets.Button) -> None:
-        self.send(self.design.reset())
-        self._make_knobs()
+        with ONE_AT_A_TIME:
+            self.send(self.design.reset())
+            self._make_knobs()
 
     def _tell(self, knob: Knob) -> None:
         """The knob's name, and what the rig has where that is another value."""

@@ -16,7 +16,7 @@ from typing import Any, Generic, TypeVar
 import ipywidgets as widgets
 
 from ..report.blocks import fragment
-from .design_model import DesignModel
+from .design_model import ONE_AT_A_TIME, DesignModel
 
 Request = TypeVar("Request")
 Act = Callable[[], None]
@@ -185,10 +185,11 @@ class LiveView(ABC, Generic[Request]):
 
 def safely(act: Act, say: Callable[[str], None]) -> None:
     """Do a step of the page; a message is better than a page that goes silent, since nobody reads the kernel's log."""
-    try:
-        act()
-    except Exception as wrong:
-        say(str(wrong) or type(wrong).__name__)
+    with ONE_AT_A_TIME:
+        try:
+            act()
+        except Exception as wrong:
+            say(str(wrong) or type(wrong).__name__)
 
 
 def button(name: str, hint: str, act: Act, **more: Any) -> widgets.Button:

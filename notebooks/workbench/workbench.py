@@ -22,7 +22,7 @@ from thermicon.perception.observer.observer_model import ObserverModel
 
 from ..files.document import Document
 from ..timeline.scene import Scene
-from .design_model import DesignModel
+from .design_model import ONE_AT_A_TIME, DesignModel
 from .document_bar import document_of
 
 if TYPE_CHECKING:
@@ -117,9 +117,10 @@ class Workbench:
 
     @text.setter
     def text(self, text: str) -> None:
-        frame = self._design.show_text(text)
-        if self.design_view is not None:
-            self.design_view.send(frame)
+        with ONE_AT_A_TIME:
+            frame = self._design.show_text(text)
+            if self.design_view is not None:
+                self.design_view.send(frame)
 
     @property
     def document(self) -> Document:
@@ -230,7 +231,7 @@ class Workbench:
             self.live.tell()
 
         design.on_page |= {"save": bar.saved_by_key, "left": bar.take_left, "hello": greeted}
-        design.on_page["stop device"] = lambda _: self.live.stop("Stop on the time line")
+        design.stop_device = lambda: self.live.stop("Stop on the time line")
         views = [design.box, ranked.box, export.box, self.live.box]
         tabs = widgets.Tab(views, titles=("Design", "Set", "Export", "Live"))
 
@@ -240,10 +241,11 @@ class Workbench:
             part.add_class("thermicon-judged")  # pale where the page itself knows that it is older than the text
 
         def shown(change: Any) -> None:
-            bar.beside(design=change["new"] == 0)
-            for place, view in enumerate(live):
-                view.shown = change["new"] == place
-                view.renew(0.0)  # who opens a tab has finished typing
+            with ONE_AT_A_TIME:
+                bar.beside(design=change["new"] == 0)
+                for place, view in enumerate(live):
+                    view.shown = change["new"] == place
+                    view.renew(0.0)  # who opens a tab has finished typing
 
         def changed() -> None:
             for view in live:

@@ -106,8 +106,9 @@ def test_a_laptop_shows_curves_and_errors_without_scrolling_and_four_sliders_in_
     assert count == [True, False, False], "slider and Reset"
     page.locator(".tm-picker").select_option("cold-to-warm")
     page.get_by_role("button", name="Pin", exact=True).click()
-    page.locator(".thermicon-bar select").select_option("fingertip")
     expect(page.locator(".tm-sides tbody tr")).to_have_count(2)
+    page.locator(".thermicon-bar select").select_option("fingertip")
+    expect(page.locator(".tm-sides tbody tr").first).to_contain_text("cold-to-warm, thenar")
     expect(page.locator(".tm-sides tbody tr").last).to_contain_text("cold-to-warm, fingertip")
     for width in (1280, 900, 1920):
         page.set_viewport_size({"width": width, "height": 800})

@@ -1,6 +1,8 @@
 """What the page is given to play, and a version pinned beside the present one, without a browser."""
 
+from collections.abc import Callable
 from pathlib import Path
+from threading import Event, Thread
 from typing import Any
 
 import numpy
@@ -9,9 +11,12 @@ import pytest
 from tests.notebooks.workbench.openbench import wait
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import parse
+from thermicon.notebooks import Workbench
 from thermicon.notebooks.files.document import Document
 from thermicon.notebooks.timeline.frames import WORDS
+from thermicon.notebooks.workbench import design_model
 from thermicon.notebooks.workbench.design_model import DesignModel
+from thermicon.notebooks.workbench.knobs import turned
 from thermicon.notebooks.workbench.reel import reel_of, shipped_texts
 from thermicon.notebooks.workbench.set_strip import SetStrip
 
@@ -54,6 +59,52 @@ def test_sides_change_with_text_icon_rig_and_knobs_and_change_back(design: Desig
     assert (design.rig.name, design.scene.icon, design.values) == ("fingertip", "nigh", {})
     assert design.receive({"type": "undo"}).meta["text"] == TWO
     assert "pinned" not in design.receive({"type": "unpin"}).meta
+
+
+@pytest.mark.parametrize(
+    "act",
+    [
+        lambda bench: setattr(bench.bar.rig, "value", "fingertip"),
+        lambda bench: setattr(bench.design_view.sliders["contact.area_cm2"], "value", 4.0),
+        lambda bench: setattr(bench, "text", TWO.replace("by 4", "by 3")),
+    ],
+    ids=["rig", "slider", "cell"],
+)
+def test_what_is_pinned_in_another_thread_is_never_half_of_a_change(
+    act: Callable[[Any], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench: Any = Workbench(TWO, "thenar")
+    assert bench.page is not None
+    drawing, go_on, scene = Event(), Event(), design_model.scene
+
+    def held(*given: Any) -> Any:
+        drawing.set()
+        assert go_on.wait(30.0)
+        return scene(*given)
+
+    monkeypatch.setattr(design_model, "scene", held)
+    pin = bench.design_view.canvas._receive
+    threads = [Thread(target=act, args=(bench,)), Thread(target=pin, args=(None, {"type": "pin"}, ()))]
+    threads[0].start()
+    assert drawing.wait(30.0)
+    threads[1].start()
+    threads[1].join(0.3)
+    go_on.set()
+    for thread in threads:
+        thread.join(30.0)
+    pinned = bench._design.pinned
+    assert pinned.scene.text == pinned.document.text
+    assert pinned.scene.rig == turned(pinned.nominal, pinned.values)[0]
+
+
+def test_stop_on_the_time_line_waits_for_no_other_action() -> None:
+    bench: Any = Workbench(TWO, "thenar")
+    assert bench.page is not None
+    stop = Thread(target=bench.design_view.canvas._receive, args=(None, {"type": "stop device"}, ()))
+    with design_model.ONE_AT_A_TIME:
+        stop.start()
+        stop.join(10.0)
+    assert "Stop on the time line" in bench.live.said["status"].value
 
 
 def test_a_page_that_asks_again_after_silence_changes_sides_once(design: DesignModel) -> None:
