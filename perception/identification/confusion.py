@@ -222,13 +222,13 @@ NOISES = 4
 """Features that carry noise: intensity, rate, length, pause."""
 
 
-def few_named(icons: int) -> int:
-    """Trials of an icon for one of many people: the fewer the more names each of them is compared with.
+def few_named(icons: int, surfaces: int = 1) -> int:
+    """Trials of an icon for one of many people: the fewer the more names, on so many surfaces, each is compared with.
 
-    >>> few_named(6), few_named(64)
-    (32, 4)
+    >>> few_named(6), few_named(6, surfaces=2), few_named(64)
+    (32, 16, 4)
     """
-    return min(NAMED_SAMPLES, max(LEAST_NAMED, FEW_NAMED // icons**2))
+    return min(NAMED_SAMPLES, max(LEAST_NAMED, FEW_NAMED // (surfaces * icons**2)))
 
 
 def name_directly(

@@ -308,8 +308,8 @@ def scored(
     """
     observer, people, form = laboratory
     icons = len(few.names)
-    samples = few_named(icons) if form == "naming" else min(SAMPLES, max(LEAST, NAMED // icons))
     felt = respond(few, people, observer, times=True)
+    samples = few_named(icons, felt.surfaces) if form == "naming" else min(SAMPLES, max(LEAST, NAMED // icons))
     d_prime = memory_dprime(felt, apart_by, people.memory, observer, task)
     known = d_prime if form == apart_by else None
     confusion = identify(felt, form, people, observer, seed, samples, task=task, d_prime=known)

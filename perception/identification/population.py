@@ -157,6 +157,11 @@ class PopulationResponse:
         return int(self.episodes.counts.shape[1]) if self.tracks is None else len(self.tracks.names)
 
     @property
+    def surfaces(self) -> int:
+        """Number of surfaces that are felt apart."""
+        return 1 if self.tracks is None else len(self.tracks.surfaces)
+
+    @property
     def detected(self) -> Detection:
         """Detection of every icon by every person; a ValueError where it was not asked for."""
         if self.detection is None:
@@ -284,9 +289,9 @@ class Identification:
         return np.asarray(sum(share * bits for share, bits in each))
 
 
-def form_samples(forms: Collection[MemoryForm], icons: int) -> dict[MemoryForm, int]:
+def form_samples(forms: Collection[MemoryForm], icons: int, surfaces: int = 1) -> dict[MemoryForm, int]:
     """Trials of an icon for each person, by form; where both count, fewer are named directly."""
-    return {"episodes": SAMPLES, "naming": few_named(icons) if len(forms) > 1 else NAMED_SAMPLES}
+    return {"episodes": SAMPLES, "naming": few_named(icons, surfaces) if len(forms) > 1 else NAMED_SAMPLES}
 
 
 def identify_by(
@@ -299,7 +304,7 @@ def identify_by(
     task: Task = USUAL,
 ) -> Identification:
     """The same by every form, of which laboratories have these shares."""
-    forms, samples = list(shares), form_samples(shares, felt.icons)
+    forms, samples = list(shares), form_samples(shares, felt.icons, felt.surfaces)
     d_prime = memory_dprime(felt, forms[0], crowd.memory, observer, task)
     known = {forms[0]: d_prime}
     found = {

@@ -105,7 +105,7 @@ def name_apart(
             for surface, episodes in enumerate(most.tolist()):
                 key = (seed, 8, surface) if surface else (seed, 8)
                 rng = np.random.default_rng(np.random.SeedSequence(key, spawn_key=(first + person,)))
-                noise[surface, :episodes] = rng.standard_normal((episodes, *noise.shape[2:]))
+                rng.standard_normal(out=noise[surface, :episodes])
             alignment.name_apart(
                 rated.features[person], rated.counts[person], played, intensity[person], timing[person],
                 observer.missing_cost, noise, counts[person],

@@ -85,31 +85,35 @@ def _aligned(one: Any, ones: int, two: Any, twos: int, intensity: Any, timing: f
     return float(cost[ones, twos])
 
 
-def _of_pair(x: Any, y: Any, intensity: Any, timing: float) -> float:
-    """m² of two episodes of one quality, without Δg²."""
-    sd = intensity[int(x[QUALITY])]
-    square = (x[RATE] - y[RATE]) ** 2 + (x[PAUSE] - y[PAUSE]) ** 2
-    if x[CUT] == 0.0 and y[CUT] == 0.0:
-        square += (x[LENGTH] - y[LENGTH]) ** 2
-    noise = sd * sd + 0.5 * (x[NOISE] * x[NOISE] + y[NOISE] * y[NOISE])
-    return float((x[INTENSITY] - y[INTENSITY]) ** 2 / noise + square / (timing * timing))
+def _of_pair(one: Any, a: int, i: int, two: Any, b: int, j: int, intensity: Any, timing: float) -> float:
+    """m² of episode i of icon a in `one` and j of b in `two`, of one quality, without Δg²."""
+    sd = intensity[int(one[a, i, QUALITY])]
+    square = (one[a, i, RATE] - two[b, j, RATE]) ** 2 + (one[a, i, PAUSE] - two[b, j, PAUSE]) ** 2
+    if one[a, i, CUT] == 0.0 and two[b, j, CUT] == 0.0:
+        square += (one[a, i, LENGTH] - two[b, j, LENGTH]) ** 2
+    noise = sd * sd + 0.5 * (one[a, i, NOISE] * one[a, i, NOISE] + two[b, j, NOISE] * two[b, j, NOISE])
+    return float((one[a, i, INTENSITY] - two[b, j, INTENSITY]) ** 2 / noise + square / (timing * timing))
 
 
 def _least_cost(
-    one: Any, ones: int, alone: Any, c: float, two: Any, twos: int, missing: Any, sd: Any, timing: float, cost: Any
-) -> float:
-    """d′² between two sequences by g of their episodes; those of `one` cost `c` more; `cost` (twos + 1,) is room."""
+    one: Any, a: int, ones: int, alone: Any, c: float, two: Any, b: int, twos: int, missing: Any, sd: Any,
+    timing: float, cost: Any,
+) -> float:  # fmt: skip
+    """d′² between icon a of `one` and b of `two` (icons, room, FEATURES) by g of their episodes, (icons, room).
+
+    Those of `one` cost `c` more; `cost` (room + 1,) is for use. Places instead of slices: half of the time.
+    """
     cost[0] = 0.0
     for j in range(twos):
-        cost[j + 1] = cost[j] + missing[j] * missing[j]
+        cost[j + 1] = cost[j] + missing[b, j] * missing[b, j]
     for i in range(ones):
-        lone = alone[i] * alone[i] + c
+        lone = alone[a, i] * alone[a, i] + c
         before, cost[0] = cost[0], cost[0] + lone
         for j in range(twos):
-            best = min(cost[j + 1] + lone, cost[j] + missing[j] * missing[j])
-            if one[i, QUALITY] == two[j, QUALITY]:
-                off = alone[i] - missing[j]
-                best = min(best, before + max(of_pair(one[i], two[j], sd, timing), off * off))
+            best = min(cost[j + 1] + lone, cost[j] + missing[b, j] * missing[b, j])
+            if one[a, i, QUALITY] == two[b, j, QUALITY]:
+                off = alone[a, i] - missing[b, j]
+                best = min(best, before + max(of_pair(one, a, i, two, b, j, sd, timing), off * off))
             before, cost[j + 1] = cost[j + 1], best
     return float(cost[twos])
 
@@ -124,7 +128,7 @@ def _distances(
     alone, missing = np.empty(one.shape[1:3]), np.empty(two.shape[1:3])
     cost = np.empty(two.shape[2] + 1)
     for person in range(apart.shape[0]):
-        sd = intensity[person]
+        sd, own, other = intensity[person], one[person], two[person]
         for i in range(apart.shape[1]):
             for k in range(ones[person, i]):
                 alone[i, k] = unmatched(one[person, i, k], sd)
@@ -134,9 +138,8 @@ def _distances(
         for i in range(apart.shape[1]):
             for j in range(i + 1 if same else 0, apart.shape[2]):
                 square = least_cost(
-                    one[person, i], ones[person, i], alone[i], 0.0, two[person, j], twos[person, j], missing[j], sd,
-                    timing[person], cost,
-                )  # fmt: skip
+                    own, i, ones[person, i], alone, 0.0, other, j, twos[person, j], missing, sd, timing[person], cost
+                )
                 apart[person, i, j] = math.sqrt(square)
                 if same:
                     apart[person, j, i] = apart[person, i, j]
@@ -166,7 +169,7 @@ def _name(
     square of its size, since noise is part of it.
     """
     icons = felt.shape[0]
-    now, alone, missing = np.empty(felt.shape[1:]), np.empty(felt.shape[1]), np.empty(felt.shape[:2])
+    now, alone, missing = np.empty((1, *felt.shape[1:])), np.empty((1, felt.shape[1])), np.empty(felt.shape[:2])
     cost = np.empty(felt.shape[1] + 1)
     for j in range(icons):
         for k in range(counts[j]):
@@ -174,10 +177,10 @@ def _name(
     for i in range(icons):
         for s in range(noise.shape[2]):
             for k in range(counts[i]):
-                alone[k] = noisy(felt[i, k], intensity, timing, louder[i], noise[k, i, s], now[k])
+                alone[0, k] = noisy(felt[i, k], intensity, timing, louder[i], noise[k, i, s], now[0, k])
             best, name = math.inf, 0
             for j in range(icons):
-                square = least_cost(now, counts[i], alone, c, felt[j], counts[j], missing[j], intensity, timing, cost)
+                square = least_cost(now, 0, counts[i], alone, c, felt, j, counts[j], missing, intensity, timing, cost)
                 if square < best:
                     best, name = square, j
             answers[i, name] += 1.0
@@ -215,8 +218,8 @@ def _name_apart(
                     own, other = played[surface, i], played[surface, j]
                     if known[surface, other] < 0.0:  # icons share tracks
                         known[surface, other] = least_cost(
-                            now[surface], counts[own], alone[surface], c, felt[other], counts[other], missing[other],
-                            intensity, timing, cost,
+                            now, surface, counts[own], alone, c, felt, other, counts[other], missing, intensity, timing,
+                            cost,
                         )  # fmt: skip
                     total[turn] += known[surface, other]
                     if total[turn] > most:
@@ -229,7 +232,7 @@ def _name_apart(
                     answers[i, (i + turn) % icons] += 1.0 / ties
 
 
-_compile: Any = kernel(nogil=True)
+_compile: Any = kernel(nogil=True, error_model="numpy")
 unmatched: Any = _compile(_unmatched)
 matched: Any = _compile(_matched)
 put: Any = _compile(_put)

@@ -176,8 +176,10 @@ def _rise_table() -> Any:
 MILLS, RISE = _mills_table(), _rise_table()
 
 
-_compile: Any = kernel(nogil=True)
-_vector: Any = kernel(nogil=True, error_model="numpy", fastmath={"reassoc", "nsz", "contract", "arcp"})
+_compile: Any = kernel(nogil=True, error_model="numpy")
+_vector: Any = kernel(
+    nogil=True, error_model="numpy", fastmath={"reassoc", "nsz", "contract", "arcp"}, forceinline=True
+)
 cumulative: Any = _compile(_cumulative)
 between: Any = _vector(_between)
 first_below: Any = _compile(_first_below_index)

@@ -161,7 +161,7 @@ def _all_episodes(cold: Any, warm: Any, dt: float, bar: float, a: float, p: floa
             counts[person, icon] = episodes(cold[person, icon], warm[person, icon], dt, bar, a, p, found[person, icon])
 
 
-_compile: Any = kernel(nogil=True)
+_compile: Any = kernel(nogil=True, error_model="numpy")
 segments: Any = _compile(_segments)
 split_at: Any = _compile(_split_at)
 episodes: Any = vectorised(_episodes)

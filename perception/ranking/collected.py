@@ -63,7 +63,8 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
 def _sampling_error(job: Job, confusions: Array, people: int = 1) -> float:
     """Largest standard error of a cell of the mean over forms, of (forms, …), to which so many people give answers."""
     icons = len(job.members)
-    samples, exact = form_samples(job.forms, icons), {"episodes": icons <= 2, "naming": icons == 1}
+    samples = form_samples(job.forms, icons, len(job.tracks.surfaces))
+    exact = {"episodes": icons <= 2, "naming": icons == 1}
     errors = [
         0.0 if exact[form] else share * sampling_error(named, people * samples[form])
         for (form, share), named in zip(job.shares, confusions, strict=True)

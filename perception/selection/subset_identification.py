@@ -150,7 +150,7 @@ def _to_nearest(half: Any, push: Any, chosen: Any, a: int, place: int, nearest: 
                 nearest[s] = value if value < nearest[s] else nearest[s]
 
 
-_compile: Any = kernel(nogil=True)
+_compile: Any = kernel(nogil=True, error_model="numpy")
 _approach: Any = _compile(_to_nearest)
 tally: Callable[..., tuple[float, float]] = _compile(_tally)
 replaced: Callable[[Array, Array, Array, Any, int, Any], Array] = _compile(_replaced)

@@ -1,6 +1,9 @@
 """``thermicon rank`` at the command line."""
 
 import json
+import os
+import subprocess
+import sys
 from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
@@ -312,3 +315,17 @@ def test_a_lapse_of_the_layout_file_is_what_the_details_said(cli: Cli, tmp_path:
 )
 def test_icons_and_elements_that_do_not_go_together_say_which_is_which(cli: Cli, words: list[str], told: str) -> None:
     assert told in " ".join(cli("rank", *words).stderr.split())
+
+
+@pytest.mark.slow
+def test_no_bit_depends_on_whether_machine_code_was_just_made_or_kept(tmp_path: Path) -> None:
+    """Two copies of one compiled function, made for two callers, may round differently: which one runs is chance."""
+    program = [sys.executable, "-m", "thermicon.notebooks.cli.main"]
+    made, kept = (
+        [
+            subprocess.run([*program, *words.split()], capture_output=True, check=True, env=env).stdout
+            for words in ("rank six-icons --json -", "rank pulse-sequences --json -", "simulate six-icons -o -")
+        ]
+        for env in 2 * [{**os.environ, "THERMICON_CACHE": str(tmp_path)}]
+    )
+    assert made == kept
