@@ -6,6 +6,7 @@ KINDS = {
     "cue file": (r"cue\s+\d", "give it where icons are asked for"),
     "study file": (r"\[(stimuli|participants|trials)\]", "thermicon study takes it"),
     "device file": (r"driven_by\s*=", "give it as the device"),
+    "layout file": (r"\[\[\s*element\s*\]\]", "give it as the rig, as of rank"),
     "rig file": (r"(base\s*=|\[\[?(skin|contact|heat_sink|module|thermode)\b)", "give it as the rig, as of simulate"),
     "log of E-Prime": (r"\*\*\* LogFrame Start", "export a table from E-DataAid"),
     "table of records": (r"\A(#.*\n|\s)*\[\[record\]\]", "give it as the observer"),

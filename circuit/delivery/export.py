@@ -144,7 +144,7 @@ class Export:
         """
         found, losses = [], self._losses
         if self.whole is not None and self.whole.colour == "red":
-            found.append(("all elements together", Refusal("unsafe", f"{self.whole.reason}; {self.whole.cure}")))
+            found.append(("the whole layout", Refusal("unsafe", f"{self.whole.reason}; {self.whole.cure}")))
         for one in self.tracks:
             name, causes = one.delivery.name, one.refusals
             if (felt := losses.get(name, ())) and not causes:

@@ -15,14 +15,14 @@ from typing import Literal
 import numpy as np
 
 from thermicon.base.checks.arguments import checked
-from thermicon.base.files.inputs import named_text, shipped_names
+from thermicon.base.files.inputs import named_text, read_toml, shipped_names
 from thermicon.base.files.records import shipped_records
 from thermicon.base.words.clean_text import name_fault
 
 from .faults import unusual
 from .layoutfile import LayoutTable, Sink, Supply, read_layout_table
 from .rig import AnyRig, Rig, rig_names
-from .rigfile import RigError, parse_toml
+from .rigfile import RigError
 from .usual import unusual_values
 
 NEIGHBOURS = ((0.0, 0.022, 0.14), (0.5, 0.011, 0.07), (1.0, 0.006, 0.04), (2.0, 0.0014, 0.009))
@@ -138,7 +138,7 @@ class Layout:
         Raises RigError with every fault of the file on a line of its own, or the nearest name where there is none.
         """
         text, where = named_text(source, layout_names(), "layout", RigError)
-        table = read_layout_table(parse_toml(text, where), where)
+        table = read_layout_table(read_toml(text, where, "layout file", ("element",), RigError), where)
         try:
             elements = tuple(_element(table, place, Path(source).parent) for place in range(len(table.element)))
         except RigError as problem:

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from functools import partial
 from math import cos, sin, tau
 from typing import Annotated, Any, Literal
 
@@ -14,6 +15,7 @@ from thermicon.icons.model.context import MOST_ELEMENTS
 from . import faults as kinds
 from .faults import KeyTable, unit_of
 from .rigfile import RigError
+from .usual import likely_unit
 
 Millimetres = Annotated[float, Field(ge=-5000, le=5000)]
 """Farther apart than arms reach, elements are not on one person."""
@@ -121,7 +123,7 @@ def read_layout_table(document: Mapping[str, Any], where: str) -> LayoutTable:
     try:
         return LayoutTable.model_validate(dict(document))
     except ValidationError as problem:
-        faults = key_faults(problem, _nearest, unit_of)
+        faults = key_faults(problem, _nearest, unit_of, likely_unit=partial(likely_unit, of="layout"))
         raise RigError("\n".join(f"{where}: {fault}" for fault in faults)) from None
 
 

@@ -245,7 +245,7 @@ class RigTable(KeyTable):
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
     """Return the TOML text as a dictionary, or raise RigError that says which line is wrong."""
-    return read_toml(text, where, "rig file", ("skin", "base"), RigError)
+    return read_toml(text, where, "rig file", ("skin", "base", "element"), RigError)
 
 
 def read_table(document: Mapping[str, Any], where: str) -> RigTable:

@@ -49,13 +49,13 @@ def _numbers(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, 
                     yield from _numbers(each, f"{prefix}{name}.{place}.")
 
 
-def likely_unit(key: str, value: float) -> str:
-    """The other unit in which an impossible value of a key would be usual, in words; empty where there is none.
+def likely_unit(key: str, value: float, of: str = "keys") -> str:
+    """The other unit in which an impossible value of a rig's key (or a `layout`'s) would be usual; empty for none.
 
     >>> likely_unit("skin.rest_C", 89.6), likely_unit("skin.rest_C", 45.5)
     ('89.6 looks like °F, 32 °C', '')
     """
-    low, high, _ = usual_values().get(re.sub(r"\.\d+\.", ".0.", key), (value, value, ""))
+    low, high, _ = shipped_table(USUAL_VALUES)[of].get(re.sub(r"\.\d+\.", ".0.", key), (value, value, ""))
     return "" if low <= value <= high else _likely(value, unit_of(key), low, high)
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from math import inf, nan
+from math import ceil, inf, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -72,8 +72,11 @@ class Whole(Judged):
     @property
     def cure(self) -> str:
         """What keeps the first hard limit that is exceeded."""
-        supply = any("supply" in check.quantity for check in self.findings[:1])
-        return f"use {'less current, fewer elements at one time, or a larger [supply]' if supply else APART}"
+        worst = self.findings[0]
+        if "supply" not in worst.quantity:
+            return f"use {APART}"
+        enough = ceil(100.0 * worst.value) / 100.0
+        return f"use less current, fewer elements at one time, or a [supply] of {enough:g} {worst.unit} or more"
 
     def to_dict(self) -> dict[str, object]:
         """All of it in the form of a sidecar."""

@@ -36,7 +36,7 @@ def after_ranking(found: SetReport, command: Command, cures: Mapping[str, str] |
     if lost:
         return command("simulate", "--icon", lost[0])
     if found.ranking.elements:
-        return ""  # icons on several elements are neither edited nor chosen
+        return _by_hand(found, missed, command)
     if not missed and min(found.ranking.felt.detected) < FELT_FROM:
         return _wider(found, command)
     if missed == ["count"]:
@@ -45,6 +45,21 @@ def after_ranking(found: SetReport, command: Command, cures: Mapping[str, str] |
         return _by_way(found, command)
     if _close(found):
         return command("improve", "--edits", "-o", "edited.cue")
+    return command("export", *PLAYED)
+
+
+def _by_hand(found: SetReport, missed: list[str], command: Command) -> str:
+    """To change what is felt or told apart least, since icons on several elements are not edited; else to export."""
+    from thermicon.perception.criteria import FELT_FROM
+
+    ranking = found.ranking
+    if min(ranking.felt.detected) < FELT_FROM:
+        least = min(ranking.icons, key=lambda icon: icon.detected_probability)
+        return f"write {least.name} larger, then {command('rank')}"
+    if missed or _close(found):
+        worst = ranking.worst
+        those = f"{worst.a} or {worst.b}" if worst else "the icon"
+        return f"change {those}, then {command('rank')}"
     return command("export", *PLAYED)
 
 

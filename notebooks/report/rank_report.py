@@ -187,16 +187,17 @@ def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = N
     apart, labels = sum(icon.playable for icon in icons), made.ranking.labels
     chosen = () if made.choice is None else made.choice.icons
     icons = sorted(icons, key=lambda icon: icon.name not in chosen)
-    both = differs(icons)
-    elements, own = made.ranking.elements, RANKED_BOTH if both else RANKED
-    heads = (own[0], *[WHERE] * bool(elements), *own[1:])
+    both, elements = differs(icons), made.ranking.elements
+    heads: tuple[str, ...] = RANKED_BOTH if both else RANKED
+    if elements:
+        heads = (heads[0], WHERE, *(head for head in heads[1:] if head != "channel"))  # as wide as a terminal, too
     rows: list[tuple[str | Cell, ...]] = [
         (
             f"{'✓ ' * (icon.name in chosen)}{icon.name}{' *' * (place >= apart)}",
             *([where_text(icon, elements)] if elements else []),
             percent(icon.detected_probability),
             seconds(icon.onset_s),
-            *([] if both else [icon.channel or "–"]),
+            *([icon.channel or "–"] if "channel" in heads else []),
             Cell(percent(icon.felt_and_named), "strong"),
             *([percent(icon.proportion_correct)] if both else []),
             rival(made.ranking, labels.index(icon.name)),

@@ -254,7 +254,7 @@ def identify(
         from .surfaces import name_apart
 
         return name_apart(
-            felt.episodes, felt.tracks.played, observer, memory=crowd.memory, lapse=lapse, seed=seed,
+            felt.episodes, felt.tracks, observer, memory=crowd.memory, lapse=lapse, seed=seed,
             samples=min(samples, NAMED_SAMPLES), first=first,
         )  # fmt: skip
     if form == "naming":

@@ -20,6 +20,7 @@ from ..observer.observer import Observer
 from ..sensation.detection import Detection
 from .confusion import NOISES, Confusion, with_lapses
 from .episodes import Episodes, intensity_noise
+from .tracks import Tracks
 
 Played = NDArray[np.int64]
 """Place (surfaces, icons) of the track that each surface plays in each icon."""
@@ -78,7 +79,7 @@ def detected_by_any(parts: Sequence[Detection], played: Played) -> Detection:
 
 def name_apart(
     felt: Episodes,
-    played: Played,
+    tracks: Tracks,
     observer: Observer,
     *,
     memory: Array,
@@ -89,11 +90,12 @@ def name_apart(
 ) -> Confusion:
     """Confusions (people, icons, icons) of icons that are named episode by episode on all surfaces together.
 
-    The first surface has the noise of `name_directly`. Names that cost the same share a trial.
+    The first surface by rank has the noise of `name_directly`. Names that cost the same share a trial.
     """
     from ..kernels import alignment
 
-    people, icons = len(felt), played.shape[1]
+    assert tracks.played is not None
+    played, people, icons = tracks.played, len(felt), len(tracks.names)
     rated = felt.scaled("naming", observer)
     intensity, timing = intensity_noise("naming", observer, memory), observer.timing_noise * memory
     counts = np.zeros((people, icons, icons))
@@ -102,8 +104,8 @@ def name_apart(
         for person in range(part.start, part.stop):
             most = rated.counts[person][played].max(axis=1)
             noise = np.zeros((len(played), most.max(), icons, samples, NOISES))
-            for surface, episodes in enumerate(most.tolist()):
-                key = (seed, 8, surface) if surface else (seed, 8)
+            for surface, (rank, episodes) in enumerate(zip(tracks.ranks, most.tolist(), strict=True)):
+                key = (seed, 8, rank) if rank else (seed, 8)
                 rng = np.random.default_rng(np.random.SeedSequence(key, spawn_key=(first + person,)))
                 rng.standard_normal(out=noise[surface, :episodes])
             alignment.name_apart(

@@ -32,6 +32,7 @@ class Tracks:
     `names` are those of the icons, `by_rig` each rig with its tracks, `surfaces` the elements that play. `played`
     (surfaces, icons) says which of all tracks, one rig after the other, an element plays in an icon; None: icons on one
     element, which are their own tracks. In a share `lapse` of trials the task itself makes people give any name.
+    `ranks` are those of the surfaces by what they play, whatever their names and their order in the layout.
     """
 
     names: tuple[str, ...]
@@ -39,6 +40,7 @@ class Tracks:
     surfaces: tuple[str, ...] = ("",)
     played: NDArray[np.int64] | None = None
     lapse: float = 0.0
+    ranks: tuple[int, ...] = (0,)
 
     @classmethod
     def of(cls, icons: Sequence[Icon] | Sequence[SpatialIcon], layout: Layout) -> Tracks:
@@ -59,7 +61,10 @@ class Tracks:
         places = {pair: place for place, pair in enumerate(places)}
         played = np.array([[places[pair] for pair in row] for row in keys], dtype=np.int64)
         by_rig = tuple((rig, tuple(tracks_of.values())) for rig, tracks_of in known.items())
-        return cls(names, by_rig, tuple(element.name for element in elements), played, layout.lapse)
+        told = [[f"{rig.document} {key}" for rig, key in row] for row in keys]
+        ordered = sorted(range(len(told)), key=told.__getitem__)
+        ranks = tuple(ordered.index(surface) for surface in range(len(told)))
+        return cls(names, by_rig, tuple(element.name for element in elements), played, layout.lapse, ranks)
 
     @property
     def count(self) -> int:

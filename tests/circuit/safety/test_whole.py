@@ -1,5 +1,6 @@
 """Rules about all elements of a layout together, on both sides of each limit."""
 
+import re
 from dataclasses import replace
 from math import inf
 
@@ -62,7 +63,11 @@ def test_one_clock_is_demanded_only_where_the_largest_are_too_much_and_bounds_th
     assert judge_whole(layout(supply=Supply(current_limit_A=4.0, power_limit_W=99)), icons).offset_s is None
     late = [[drawing(0, 100, 2.0), drawing(150 - 51, 250, 2.0)]]
     assert found(judge_whole(supplied, late)) == ["current from the supply"]
-    assert "larger [supply]" in judge_whole(supplied, late).cure
+    for drawn_A in (2.0, 1.51234):
+        both = [[drawing(0, 100, 2.0), drawing(99, 250, drawn_A)]]
+        (enough_A,) = re.findall(r"a \[supply\] of (\S+) A or more", judge_whole(supplied, both).cure)
+        obeyed = layout(supply=Supply(current_limit_A=float(enough_A), power_limit_W=99))
+        assert judge_whole(obeyed, both).colour == "green"
     for gap, offset_s in ((21, 0.2), (19, 0.1), (3, 0.02), (1, 0.01)):
         near = [[drawing(0, 100, 2.0), drawing(100 + gap, 250, 2.0)]]
         assert judge_whole(supplied, near).offset_s == offset_s

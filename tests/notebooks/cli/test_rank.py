@@ -118,6 +118,27 @@ def test_the_next_command_is_chosen_by_what_was_found(d_prime: float, said: str)
     assert after_ranking(found, commands(["my icons.cue"], rig, crowd)) == said
 
 
+@pytest.mark.parametrize(
+    ("d_prime", "detected", "said"),
+    [
+        (2.57, 0.51, "thermicon export a.cue --to csv -o drives"),
+        (2.5, 0.51, "change a or b, then thermicon rank a.cue"),
+        (2.57, 0.49, "write b larger, then thermicon rank a.cue"),
+    ],
+)
+def test_icons_on_several_elements_are_changed_by_hand_or_exported(d_prime: float, detected: float, said: str) -> None:
+    pair = SimpleNamespace(d_prime=d_prime, a="a", b="b")
+    icons = tuple(
+        SimpleNamespace(name=name, safe=True, reachable=True, detected_probability=felt)
+        for name, felt in (("a", 0.9), ("b", detected))
+    )
+    set_ = SimpleNamespace(
+        pairs=(pair,), worst=pair, icons=icons, felt=SimpleNamespace(detected=np.array([0.9, detected])), elements="lr"
+    )
+    found: Any = SimpleNamespace(ranking=set_, goal=None, edits={})
+    assert after_ranking(found, commands(["a.cue"], RigOptions(), CrowdOptions())) == said
+
+
 def test_files_are_joined_into_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:
     more = tmp_path / "more.cue"
     head = "cue 1\nset more { site thenar; control display; baseline 32 °C }\n"
@@ -276,7 +297,7 @@ def test_a_set_on_two_sides_is_ranked_by_where_it_plays_and_says_what_is_not_in_
     assert rows["leave-right"].split()[1] == "right"
     place = "place: the elements are apart, so nothing about place is assumed; what driving costs is not in it"
     assert place in " ".join(said.split())
-    assert "Next" not in said
+    assert "Next: thermicon export turns --rig wheel --to csv -o drives" in said
     held = json.loads(made.read_text("utf-8"))
     assert {icon["name"]: icon["where"] for icon in held["icons"]}["leave-left"] == ["left"]
     assert [round(cost["published"], 3) for cost in held["place"]["costs"]] == [0.942, 0.917]

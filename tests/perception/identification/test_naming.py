@@ -10,6 +10,7 @@ from thermicon.perception import Observer
 from thermicon.perception.identification.confusion import name_directly
 from thermicon.perception.identification.episodes import Episodes, episode_distances
 from thermicon.perception.identification.surfaces import name_apart
+from thermicon.perception.identification.tracks import Tracks
 from thermicon.perception.observer.constants import Both
 
 DT = 0.01
@@ -52,7 +53,8 @@ def test_costs_of_a_name_add_over_surfaces(observer: Observer) -> None:
     cold = np.stack([USUAL, OTHERS["pause"], OTHERS["length"]])[None]
     felt = Episodes.of(cold, np.zeros_like(cold), DT, observer)
     played, person = np.array([[0, 1], [0, 2]]), np.ones(1)
-    named = name_apart(felt, played, observer, memory=person, lapse=0.0, seed=1, samples=8000).probability[0]
+    tracks = Tracks(("a", "b"), (), ("left", "right"), played, ranks=(0, 1))
+    named = name_apart(felt, tracks, observer, memory=person, lapse=0.0, seed=1, samples=8000).probability[0]
     costs = np.zeros((2, 100_000))
     for seed, (own, other) in enumerate(played):
         one, two = remembered(felt, own), remembered(felt, other)

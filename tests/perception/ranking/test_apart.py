@@ -136,6 +136,15 @@ def test_names_and_order_of_icons_and_elements_change_nothing() -> None:
     assert other.confusion[np.ix_(back, back)] == pytest.approx(usual.confusion, abs=error)
 
 
+@pytest.mark.parametrize("rigs", [{}, {"right": FINGER, "r": FINGER}], ids=["alike", "another-rig"])
+def test_names_and_order_of_the_elements_in_a_layout_change_no_draw(rigs: Mapping[str, Rig]) -> None:
+    bodies = {"a": both(COOL, WARM), "b": both(FASTER, COOL), "c": f"on left {{ {FASTER} }}"}
+    other = {name: body.replace("left", "l").replace("right", "r") for name, body in bodies.items()}
+    usual = ranked(played(**bodies), layout("left", "right", rigs=rigs), memory="naming")
+    turned = ranked(played("r, l", **other), layout("r", "l", rigs=rigs), memory="naming")
+    assert turned.confusion == pytest.approx(usual.confusion, rel=1e-9)
+
+
 def test_intervals_of_a_new_laboratory_hold_the_prediction() -> None:
     icons = played(a=both(COOL, WARM), b=both(WARM, COOL), c=f"on left {{ {FASTER} }}", d=f"on left {{ {COOL} }}")
     found = ranked(icons, layout("left", "right"), people=24, parameters=32)
