@@ -45,14 +45,27 @@ def judged_rigs(layout: Layout, tracks: Iterable[Icon], device: Device) -> dict[
         for element, more_K in zip(there, _warmer_K(there, sink, played, device), strict=True):
             own_K = element.rig.uncertainty.heat_sink_K
             if own_K + more_K > MOST_K:
-                least = sink.resistance_K_per_W * (MOST_K - own_K) / more_K
+                enough = _judged_sink(there, sink, played, device).resistance_K_per_W
                 raise RigError(
                     f"the sink {sink.name}: the other elements change it by up to {more_K:.3g} K under {element.name}, "
-                    f"known to {own_K:g} K by itself, and {MOST_K:g} K are judged; use a sink of about {least:.2g} "
+                    f"known to {own_K:g} K by itself, and {MOST_K:g} K are judged; use a sink of {enough:g} "
                     "K/W, smaller changes, or fewer elements, or give its capacity_J_per_K"
                 )
             rigs[element.name] = element.rig.with_(**{"uncertainty.heat_sink_K": own_K + more_K})
     return rigs
+
+
+def _judged_sink(elements: Sequence[Element], sink: Sink, tracks: Sequence[Icon], device: Device) -> Sink:
+    """The sink with so small a resistance, of two digits, that its elements are judged; the last that was tried."""
+    allowed_K = [MOST_K - element.rig.uncertainty.heat_sink_K for element in elements]
+    for _ in range(ROUNDS):
+        warmer_K = _warmer_K(elements, sink, tracks, device)
+        if all(more <= allowed for more, allowed in zip(warmer_K, allowed_K, strict=True)):
+            break
+        share = min(0.9 * allowed / more for more, allowed in zip(warmer_K, allowed_K, strict=True))
+        smaller = float(f"{max(share, 0.1) * sink.resistance_K_per_W:.2g}")
+        sink = sink.model_copy(update={"resistance_K_per_W": smaller})
+    return sink
 
 
 def _warmer_K(elements: Sequence[Element], sink: Sink, tracks: Sequence[Icon], device: Device) -> list[float]:

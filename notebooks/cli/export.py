@@ -129,7 +129,7 @@ def export_command(
     note(f"wrote {drives} into {folder}: {', '.join(_shown(list(ready.files)))}")
     if before is not None:
         note(f"the folder as it was before is {before}")
-    alone = "; the columns of an element begin with its name" if whole.spatial and form.together else ""
+    alone = f"; {form.together.told}" if whole.spatial and form.together else ""
     note(f"to play: {form.how}{alone}")
     note(CAUTION)
     if not whole.spatial:

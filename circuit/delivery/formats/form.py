@@ -70,11 +70,12 @@ class Played:
 
 
 class OneFile(NamedTuple):
-    """How several elements are in one file: its bytes, its columns, and what in it is of each element."""
+    """How several elements are in one file: its bytes, its columns, and what of it is each element's, also in words."""
 
     write: Callable[[Sequence[DeliveredDrive]], bytes]
     columns: Callable[[Sequence[DeliveredDrive]], tuple[Column, ...]]
     channels: Callable[[Sequence[DeliveredDrive]], tuple[object, ...]]
+    told: str = "the columns of an element begin with its name"
 
 
 ElementsPlayer = Callable[[Mapping[str, Sequence[Played]], Mapping[str, Demands], float | None], dict[str, bytes]]

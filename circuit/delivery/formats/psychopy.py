@@ -238,6 +238,7 @@ FORMAT = Format(
         write_together,
         lambda deliveries: _together(deliveries).columns(deliveries),
         lambda deliveries: _together(deliveries).channels(deliveries),
+        "a drive file holds all elements",
     ),
     set_files=SET_FILES,
     # A script on a computer that hangs holds no cut-off: it watches, and the hardware has its own.

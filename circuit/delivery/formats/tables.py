@@ -264,5 +264,10 @@ SERIAL = Format(
     how="115,200 baud: send each line without its line feed; wait at the baseline before L; A aborts",
     write=serial_write,
     columns=serial_columns,
-    together=OneFile(serial_together, lambda deliveries: serial_columns(deliveries[0]), zones_of),
+    together=OneFile(
+        serial_together,
+        lambda deliveries: serial_columns(deliveries[0]),
+        zones_of,
+        "zones 1 to 5 are the elements in the order of the layout",
+    ),
 )

@@ -168,5 +168,7 @@ TDMS = Format(
     write=tdms_write,
     columns=tdms_columns,
     needs="npTDMS",
-    together=OneFile(tdms_together, tdms_columns_together, tdms_channels),
+    together=OneFile(
+        tdms_together, tdms_columns_together, tdms_channels, "the channels of an element begin with its name"
+    ),
 )

@@ -292,4 +292,5 @@ def test_icons_on_several_elements_are_told_by_element_and_judged_together(cli: 
     assert done.exit_code == 0
     assert "upward on s5: " in done.stderr and "nearest millimetre by 0.14 K" in done.stderr
     assert "all elements together: green" in done.stderr and "whatever their clocks do" in done.stderr
+    assert "zones 1 to 5 are the elements in the order of the layout" in done.stderr
     assert cli("export", "--verify", tmp_path / "x").exit_code == 0
