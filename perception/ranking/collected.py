@@ -1,7 +1,6 @@
 """All batches of a ranking pooled in their order."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -17,6 +16,9 @@ from ..sensation.detection import pooled as pooled_detection
 from ..sensation.detection import report_step
 from .batches import DT_S, BatchResult, Job, PooledResult, run
 
+ROWS = ("detected", "cold_share", "d_prime", "bits", "plugin")
+"""Fields of a batch that have a row for each person."""
+
 
 def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None]) -> PooledResult:
     """Compute every batch, as `rank` has the keywords; `step` is called after each.
@@ -24,8 +26,10 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
     Place and order of work do not change the result.
     """
     each: Iterator[tuple[int, BatchResult]]
-    parts, correct = dict[int, BatchResult](), dict[int, Array]()
-    blur = 0.0
+    rows, waiting = dict[int, dict[str, Array]](), dict[int, tuple[Array, Array]]()
+    confusions: Array | float = 0.0
+    reports: Array | float = 0.0
+    added, blur = 0, 0.0
     if isinstance(workers, str):
         each = on_cluster(partial(run, job), job.batches, workers, job.key)
     else:
@@ -33,26 +37,27 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
         each = enumerate(in_order(partial(run, job), range(job.batches), workers or cores()))
     for number, found in each:
         blur = max(blur, _sampling_error(job, found.confusion.swapaxes(0, 1)))
-        correct[number] = np.diagonal(found.confusion, axis1=2, axis2=3).swapaxes(0, 1).copy()
-        # Confusions are most of a batch, and are needed only as their sum.
-        parts[number] = replace(found, confusion=found.confusion.sum(axis=0))
+        rows[number] = {name: getattr(found, name) for name in ROWS}
+        rows[number]["correct"] = np.diagonal(found.confusion, axis1=2, axis2=3).copy()
+        # Confusions and reports are most of a batch, and are needed only as their sums.
+        waiting[number] = found.confusion.sum(axis=0), found.reported[0]
+        while added in waiting:  # in order, so that sums do not depend on which batch was ready first
+            confusion, reported = waiting.pop(added)
+            confusions, reports, added = confusions + confusion, reports + reported, added + 1
         step()
-    ordered = [parts[number] for number in range(job.batches)]
 
     def joined(name: str) -> Array:
-        return np.concatenate([getattr(part, name) for part in ordered])
+        return np.concatenate([rows[number].pop(name) for number in range(job.batches)])
 
-    # In order, so that the sums do not depend on which batch was ready first.
-    shares = np.array([share for _, share in job.shares])
-    by_form = normalised(np.asarray(sum(part.confusion for part in ordered)) / job.people)
-    reports = np.asarray(sum(part.reported[0] for part in ordered))
+    shares, detected = np.array([share for _, share in job.shares]), joined("detected")
+    by_form = normalised(np.asarray(confusions) / job.people)
     return PooledResult(
-        detection=pooled_detection(joined("detected"), joined("cold_share"), reports, report_step(DT_S)),
-        reports=joined("detected"),
+        detection=pooled_detection(detected, joined("cold_share"), np.asarray(reports), report_step(DT_S)),
+        reports=detected,
         pairs=joined("d_prime"),
         pooled=normalised(np.average(by_form, axis=0, weights=shares)),
         shares=shares,
-        by_form=np.concatenate([correct[number] for number in range(job.batches)], axis=1),
+        by_form=np.ascontiguousarray(joined("correct").swapaxes(0, 1)),
         bits=joined("bits"),
         plugin=joined("plugin"),
         standard_error=_sampling_error(job, by_form, job.people),
