@@ -13,20 +13,22 @@ from .faults import Unusual, unit_of, unusual
 USUAL_VALUES = "usual-rig-values.toml"
 
 
-def usual_values() -> Mapping[str, tuple[float, float, str]]:
+def usual_values(of: str = "keys") -> Mapping[str, tuple[float, float, str]]:
     """For each key of `rig_keys`, and some of one layer alone, the low and high end of its usual values, and why.
+
+    ``of="layout"``: for the numbers of a layout file.
 
     >>> low, high, source = usual_values()["contact.area_cm2"]
     >>> low < 9.0 < high, source.partition(":")[0]
     (True, 'chosen by this project')
     """
-    table: dict[str, tuple[float, float, str]] = shipped_table(USUAL_VALUES)["keys"]
+    table: dict[str, tuple[float, float, str]] = shipped_table(USUAL_VALUES)[of]
     return table
 
 
 def unusual_values(document: Mapping[str, Any], of: str = "keys") -> Iterator[Unusual]:
     """Say which numbers of a rig's document (or a `layout`) are not usual, and the unit in which they would be."""
-    usual = shipped_table(USUAL_VALUES)[of]
+    usual = usual_values(of)
     for key, value, layer in _numbers(document):
         unit, name = unit_of(key), f"{key} of the {layer}" if layer else key
         general = re.sub(r"\.\d+\.", ".0.", key)
@@ -55,7 +57,7 @@ def likely_unit(key: str, value: float, of: str = "keys") -> str:
     >>> likely_unit("skin.rest_C", 89.6), likely_unit("skin.rest_C", 45.5)
     ('89.6 looks like °F, 32 °C', '')
     """
-    low, high, _ = shipped_table(USUAL_VALUES)[of].get(re.sub(r"\.\d+\.", ".0.", key), (value, value, ""))
+    low, high, _ = usual_values(of).get(re.sub(r"\.\d+\.", ".0.", key), (value, value, ""))
     return "" if low <= value <= high else _likely(value, unit_of(key), low, high)
 
 

@@ -49,7 +49,7 @@ def after_ranking(found: SetReport, command: Command, cures: Mapping[str, str] |
 
 
 def _by_hand(found: SetReport, missed: list[str], command: Command) -> str:
-    """To change what is felt or told apart least, since icons on several elements are not edited; else to export."""
+    """To change the icon that fewest feel, or the worst pair; else to export: no edits are tried on elements."""
     from thermicon.perception.criteria import FELT_FROM
 
     ranking = found.ranking
