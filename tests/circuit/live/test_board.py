@@ -13,7 +13,6 @@ import tty
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
-from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -164,8 +163,9 @@ print("stopped:", result.stopped, flush=True)
 """
 QUICK = 6.0
 OFF_WITHIN_S = 1.5
-LATE = "this computer was late"
-"""A machine that many tests share may be: the output is off, and what was to be tried did not happen."""
+TRIES = 3
+NOT_TRIED = "this computer was late", "did not begin: it is silent"
+"""On a computer that many tests share, and where a wrong byte hits the only answer to *begin*: one begins again."""
 
 
 @pytest.mark.slow
@@ -263,32 +263,33 @@ def test_one_icon_of_the_set_that_a_board_was_compiled_from_is_asked_for(
 def test_wrong_bytes_lose_rows_and_never_keep_the_output_on(wrong_of: int, tmp_path: Path, compiler: str) -> None:
     found = made("readme", 10.0)
     with board(found, tmp_path, compiler, QUICK, wrong_of) as bench:
-        try:
-            result = bench.play(found, "arrived")
-            why, plays = result.stopped, result.plays
-        except Refused as problem:
-            why, plays = str(problem), ()
-        print(f"1 of {wrong_of} bytes wrong: {why or 'played'}")
-        time.sleep(3.0 / QUICK)
+        for _ in range(TRIES):
+            try:
+                result = bench.play(found, "arrived")
+                why, plays = result.stopped, result.plays
+            except Refused as problem:
+                why, plays = str(problem), ()
+            print(f"1 of {wrong_of} bytes wrong: {why or 'played'}")
+            time.sleep(3.0 / QUICK)
+            if wrong_of < 1000 or not any(cause in why for cause in NOT_TRIED):
+                break
     assert bench.turns()[-1, 2] == 0.0
-    if why.startswith(LATE):
-        pytest.skip(why)
     assert why or plays[0].rms_K < 0.06
-    # Rows are repeated and may be lost; the answer to *begin* comes once, and one in some dozens has a wrong byte.
-    assert not why or wrong_of < 1000 or "did not begin: it is silent" in why
+    assert not why or wrong_of < 1000
 
 
 @pytest.mark.slow
 def test_a_port_that_is_pulled_out_is_told(tmp_path: Path, compiler: str) -> None:
     found = made("readme", 10.0)
+    said = "it never played"
     with board(found, tmp_path, compiler, QUICK) as bench:
-        words = [sys.executable, "-c", HOST, bench.port, str(tmp_path / "monday"), str(QUICK)]
-        with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as host:
-            assert host.stdout is not None
-            before = list(takewhile(lambda line: not line.startswith("plays"), host.stdout))
-            time.sleep(2.0 / QUICK)
-            bench.unplug()
-            said = "".join(before) + host.stdout.read()
-    if LATE in said:
-        pytest.skip(said)
+        for attempt in range(TRIES):
+            words = [sys.executable, "-c", HOST, bench.port, str(tmp_path / f"monday{attempt}"), str(QUICK)]
+            with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as host:
+                assert host.stdout is not None
+                if any(line.startswith("plays") for line in host.stdout):
+                    time.sleep(2.0 / QUICK)
+                    bench.unplug()
+                    said = host.stdout.read()
+                    break
     assert f"stopped: the sensor is lost (the port {bench.port} is lost" in said
