@@ -1,14 +1,14 @@
 /* thermicon_serial.h: lets `thermicon play --device board` play on a microcontroller. Never tried on a device.
 
    Lines of text at 115,200 baud, each with * and the CRC-16 (XMODEM) of what stands before it in four hexadecimal digits.
-   Numbers are whole: ms, thousandths of degrees C, mA, mV.
+   Numbers are whole: ms, thousandths of degrees C, mA, mV; of each turn the time in 0.1 ms and the output in 0.01 mA.
 
-       host  ?     board  I thermicon 1 DIGEST ICONS WATCHDOG LOW_MA HIGH_MA LOW HIGH HELD_LOW HELD_HIGH HELD REST
+       host  ?     board  I thermicon 2 DIGEST ICONS WATCHDOG LOW_MA HIGH_MA LOW HIGH HELD_LOW HELD_HIGH HELD REST
        host  B k   begin with the rest of icon k: off, polarity, rest       A B answer of thermicon_begin()
        host  P k   play icon k                                              A P answer of thermicon_play()
        host  F     the host is alive: nothing else feeds
        host  S     stop                                                     A S 0
-       board D ms state fault icon place display second goal output voltage        each turn
+       board D time state fault icon place display second goal output voltage        each turn
 
    Call thermicon_serial_byte() for each byte that comes, and thermicon_serial_step() where you called thermicon_step().
    A second host cannot feed by asking: the watchdog counts from F alone. */
@@ -93,7 +93,9 @@ static inline void thermicon_serial_write(thermicon_serial *serial, char *line, 
     serial->write(serial->board->context, line);
 }
 
-static inline long thermicon_milli(float value) { return (long)(1000.0f * value + (value < 0.0f ? -0.5f : 0.5f)); }
+static inline long thermicon_whole(float value) { return (long)(value + (value < 0.0f ? -0.5f : 0.5f)); }
+
+static inline long thermicon_milli(float value) { return thermicon_whole(1000.0f * value); }
 
 /* The output is off, and stays so until the host asks to begin. */
 static inline void thermicon_serial_init(thermicon_serial *serial, const thermicon_board *board,
@@ -116,7 +118,7 @@ static inline void thermicon_serial_identify(thermicon_serial *serial) {
     float low = serial->board->lowest > THERMICON_LOWEST_A ? serial->board->lowest : THERMICON_LOWEST_A;
     float high = serial->board->highest < THERMICON_HIGHEST_A ? serial->board->highest : THERMICON_HIGHEST_A;
     float watchdog = THERMICON_WATCHDOG_S < THERMICON_JUDGED_WATCHDOG_S ? THERMICON_WATCHDOG_S : THERMICON_JUDGED_WATCHDOG_S;
-    snprintf(line, sizeof line, "I thermicon 1 %s %u %ld %ld %ld %ld %ld %ld %ld %ld %ld", THERMICON_DIGEST,
+    snprintf(line, sizeof line, "I thermicon 2 %s %u %ld %ld %ld %ld %ld %ld %ld %ld %ld", THERMICON_DIGEST,
              (unsigned)THERMICON_COUNT, thermicon_milli(watchdog), thermicon_milli(low), thermicon_milli(high),
              thermicon_milli(THERMICON_LOW_C), thermicon_milli(THERMICON_HIGH_C), thermicon_milli(THERMICON_HELD_LOW_C),
              thermicon_milli(THERMICON_HELD_HIGH_C), thermicon_milli(THERMICON_HELD_S), thermicon_milli(THERMICON_REST_S));
@@ -184,9 +186,9 @@ static inline void thermicon_serial_step(thermicon_serial *serial) {
         if (board->measure_second) board->measure_second(board->context, &second);
     }
     if (serial->voltage_mV) snprintf(voltage, sizeof voltage, "%ld", serial->voltage_mV(board->context));
-    snprintf(line, sizeof line, "D %lu %d %d %u %lu %ld %ld %ld %ld %s", (unsigned long)(serial->total_us / 1000u), state,
+    snprintf(line, sizeof line, "D %lu %d %d %u %lu %ld %ld %ld %ld %s", (unsigned long)(serial->total_us / 100u), state,
              (int)player->fault, (unsigned)serial->icon, (unsigned long)player->place, thermicon_milli(display),
-             thermicon_milli(second), thermicon_milli(player->goal), thermicon_milli(serial->output), voltage);
+             thermicon_milli(second), thermicon_milli(player->goal), thermicon_whole(100000.0f * serial->output), voltage);
     thermicon_serial_write(serial, line, sizeof line);
 }
 

@@ -118,7 +118,12 @@ def _under_display(rig: Rig, run: Run, rate_Hz: float) -> Prediction:
 
 
 def steady_level(drive: Array) -> float:
-    """The drive of the steady start: the mean of the first rows, as long as they differ by what those before did."""
+    """The drive of the steady start: the mean of its rows."""
+    return float(np.mean(drive[: steady_rows(drive)]))
+
+
+def steady_rows(drive: Array) -> int:
+    """Return how many of the first rows are of a steady start: as long as they differ by what those before did."""
     steps = np.abs(np.diff(drive[:START_ROWS]))
     bends = np.abs(np.diff(drive[:START_ROWS], 2)) / np.sqrt(3.0)  # of noise as large, of a smooth ramp nothing
     first = float(min(np.quantile(steps, QUIETEST), np.quantile(bends, QUIETEST) if bends.size else 0.0))
@@ -128,7 +133,7 @@ def steady_level(drive: Array) -> float:
         if abs(drive[count] - np.mean(drive[:count])) > STEADY_SPREAD * noise:
             break
         count += 1
-    return float(np.mean(drive[:count]))
+    return count
 
 
 def _with_thermistor(rig: Rig) -> tuple[Rig, str | None]:

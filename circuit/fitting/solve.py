@@ -10,6 +10,7 @@ from thermicon.base.numbers.arrays import Array
 
 from .between import MAD_TO_SD
 from .problem import FitProblem
+from .rounding import rounding
 
 ROUNDS: tuple[tuple[float, Literal["linear", "huber"]], ...] = ((1e-3, "linear"), (1e-5, "huber"), (1e-6, "huber"))
 """Relative change of the sum of squares at which each round ends, and its loss; the first finds the noise alone."""
@@ -62,8 +63,10 @@ def solve(problem: FitProblem, begin: Array | None = None, evaluations: int = MO
     parts = parts_of(problem, problem.residuals(theta, sigma))
     least = [1.0 if run.unknown is None else ROUGH for run in problem.runs for _ in run.channels]
     inflation = tuple(max(alike(part), each) for part, each in zip(parts, least, strict=True))
-    mesh = problem.mesh_error(theta, sigma)
-    covariance = covariance_of(problem, problem.jacobian(theta, sigma), inflation, mesh)
+    jacobian = problem.jacobian(theta, sigma)
+    mesh = jacobian.T @ problem.mesh_error(theta, sigma)
+    common = np.outer(mesh, mesh) + rounding(problem, theta, jacobian, sigma)
+    covariance = covariance_of(problem, jacobian, inflation, common)
     return Solution(theta, covariance, sigma, inflation, converged)
 
 
@@ -101,11 +104,13 @@ def alike(residuals: Array) -> float:
     return float(min((1 + neighbour) / max(1 - neighbour, 1e-9), max(1.0, count / FEWEST_INDEPENDENT)))
 
 
-def covariance_of(problem: FitProblem, jacobian: Array, inflation: Sequence[float], mesh: Array | None = None) -> Array:
+def covariance_of(
+    problem: FitProblem, jacobian: Array, inflation: Sequence[float], common: Array | float = 0.0
+) -> Array:
     """Covariance of all parameters; what no row and no prior fixes gets the width of its room.
 
-    The sandwich form H⁻¹·B·H⁻¹, where B counts alike neighbouring rows once, and the error of the mesh in `residuals`
-    as noise that all rows share.
+    The sandwich form H⁻¹·B·H⁻¹, where B counts alike neighbouring rows once, and adds what is `common` to many rows
+    (unknowns, unknowns): the errors of the mesh and of rounding.
     """
     counts = [len(channel.values) for _, _, channel in problem.channels()]
     rows = np.split(jacobian, np.cumsum(counts))
@@ -115,9 +120,7 @@ def covariance_of(problem: FitProblem, jacobian: Array, inflation: Sequence[floa
         product = part.T @ part
         information += product
         middle += factor * product
-    if mesh is not None:
-        shared = jacobian.T @ mesh
-        middle += np.outer(shared, shared)
+    middle += common
     room = np.diag([(0.5 * (item.high - item.low)) ** -2.0 if item.kind == "key" else 0.0 for item in problem.unknowns])
     inverse = inverse_of(information + room)
     return np.asarray(inverse @ (middle + room) @ inverse)

@@ -55,17 +55,17 @@ def shared(rig: Rig, run: Run, times: Sequence[Array]) -> CommonErrors | None:
     """Common errors of rows at `times` of each channel, on the drive's clock; None where the drive is known."""
     if run.unknown is None or not run.unknown.any():
         return None
-    responses = _responses(rig, run)
+    after_step = responses(rig, run)
     time = np.concatenate(times)
     channel = np.repeat(np.arange(len(times)), [len(each) for each in times])
     parts = -(-len(time) // MOST_ALIKE)
     edges = np.quantile(time, np.linspace(0.0, 1.0, parts + 1))[1:-1]
     place = np.searchsorted(edges, time, side="right")
     rows = tuple(np.flatnonzero(place == part) for part in range(parts))
-    return CommonErrors(rows, tuple(_covariance(run, responses, time[each], channel[each]) for each in rows))
+    return CommonErrors(rows, tuple(_covariance(run, after_step, time[each], channel[each]) for each in rows))
 
 
-def _responses(rig: Rig, run: Run) -> tuple[Array, list[Array]]:
+def responses(rig: Rig, run: Run) -> tuple[Array, list[Array]]:
     """Times (n,) in s after a step of the drive, and what a step of one does to each channel (n,), but I·R."""
     size, level = STEP.get(run.driven_by, OTHER_STEP), float(np.median(run.drive))
     time, begin = np.arange(0.0, MEMORY_S, 0.01), 0.02

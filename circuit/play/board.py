@@ -67,7 +67,7 @@ class Board:
         self._answers: list[list[str]] = []
         self._rows: list[LineRow] = []
         self._lock = threading.RLock()  # sensors are read in a thread of their own
-        self._state, self._fault, self._last_ms = NOT_BEGUN, 0, -math.inf
+        self._state, self._fault, self._last_s = NOT_BEGUN, 0, -math.inf
         self._last: LineRow | None = None
         self._is_past = True
         self._behind_s, self._heard_s = math.inf, -math.inf
@@ -89,7 +89,7 @@ class Board:
         words: list[str] | None = None
         while words is None and time.monotonic() < until_s:
             words = self._ask("?", "I")
-        if words is None or words[:3] != ["I", "thermicon", "1"]:
+        if words is None or words[:3] != ["I", "thermicon", "2"]:
             self.close()
             raise Refused(f"{self._name}: no board answers with thermicon_serial.h; give its port, or compile it again")
         if words[3] != self._digest or int(words[4]) != len(self._names):
@@ -223,13 +223,14 @@ class Board:
                     self._answers.append(words)
 
     def _take_row(self, words: list[str]) -> None:
-        ms, state, fault, _, place, *rest = words
-        loop_C, second_C, goal_C, output_A = (1e-3 * int(word) for word in rest[:4])
+        turn, state, fault, _, place, *rest = words
+        loop_C, second_C, goal_C = (1e-3 * int(word) for word in rest[:3])
+        output_A = 1e-5 * int(rest[3])
         voltage_V = None if rest[4] == "-" else 1e-3 * int(rest[4])
-        own_s = 1e-3 * int(ms)
-        if own_s < self._last_ms:  # it was reset: its clock begins again
+        own_s = 1e-4 * int(turn)
+        if own_s < self._last_s:  # it was reset: its clock begins again
             self._behind_s = math.inf
-        self._last_ms, self._heard_s = own_s, time.monotonic()
+        self._last_s, self._heard_s = own_s, time.monotonic()
         self._behind_s = min(self._behind_s, self._clock() - own_s)
         was, self._state, self._fault = self._state, int(state), int(fault)
         on = self._state in (RESTING, PLAYING)
