@@ -1,4 +1,4 @@
-"""What each element of a layout does to all together, from its delivered drives in every corner of its rig."""
+"""Loads of a layout's elements from their delivered drives in every corner of their rigs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Icons on several elements prepared for export: each track on each rig, judged together."""
+"""Export of icons on several elements with each track on each rig judged together."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A microcontroller that plays exported icons by itself, as a line.
+"""The line to a microcontroller that plays exported icons by itself.
 
 The program on it is the exported thermicon_player.h behind thermicon_serial.h, which says how the lines look.
 """

@@ -1,4 +1,4 @@
-"""Rules about all elements of a layout together, beyond the gate of each.
+"""Rules about all elements of a layout together that the gate of each does not ask.
 
 What is drawn from one supply is the largest of each element, added, whatever their clocks do; only where that is too
 much it is the sum on one clock, and then the hardware must have one. So it is with warm and cold elements near each

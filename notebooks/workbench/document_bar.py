@@ -91,7 +91,7 @@ class DocumentBar:
         no = self._button("Discard", "drop what was not saved", self.discard)
         self.offer = widgets.Box([self.offered, yes, no]).add_class("thermicon-offer")
         buttons = list(self.buttons.values())
-        self.bar = widgets.Box([*buttons[:4], self.title, self.rig, *buttons[4:]]).add_class("thermicon-bar")
+        self.bar = widgets.Box([self.title, *buttons[:4], self.rig, *buttons[4:]]).add_class("thermicon-bar")
         self.box = widgets.VBox([self.offer, self.said, self.bar, self.panel]).add_class("thermicon-project")
         self.design.on_change(self.renew)
         self.renew()

@@ -167,7 +167,7 @@ print("stopped:", result.stopped, flush=True)
 QUICK = 3.0
 OFF_WITHIN_S = 1.5
 TRIES = 3
-NOT_TRIED = "this computer was late", "the host was silent", "did not begin: it is silent"
+NOT_TRIED = "this computer was late", "a look may take", "silent"
 """On a computer that many tests share, and where a wrong byte hits the only answer to *begin*: one begins again."""
 
 
@@ -196,8 +196,8 @@ def test_icons_are_played_from_rest_and_their_logs_tell_the_contact(tmp_path: Pa
             result = bench.play(found, *README, folder=folder)
             if not any(cause in result.stopped for cause in NOT_TRIED):
                 break
+    assert not result.stopped, result.stopped
     assert [(play.name, play.ended) for play in result.plays] == [(name, True) for name in README]
-    assert not result.stopped
     for play in result.plays:
         print(f"{play.name}: display {1e3 * play.rms_K:.0f} mK rms from the prediction")
         assert play.rms_K < 0.06
