@@ -1,4 +1,4 @@
-"""Choice of a table's columns by what they hold, where their names do not say it."""
+"""Choice of a table's columns by what they hold where their names do not say it."""
 
 from __future__ import annotations
 

@@ -69,7 +69,7 @@ class LiveResult:
     folder: Path | None
 
     def __repr__(self) -> str:
-        names = ", ".join(f"{play.name} {1e3 * play.rms_K:.0f} mK rms" for play in self.plays)
+        names = ", ".join(f"{play.name} {play.told}" for play in self.plays)
         return f"LiveResult({names or 'checked'}{f'; STOPPED: {self.stopped}' if self.stopped else ''})"
 
 

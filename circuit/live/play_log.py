@@ -46,6 +46,11 @@ class MeasuredPlay:
     ended: bool
     files: tuple[str, ...] = ()
 
+    @property
+    def told(self) -> str:
+        """How far the display was from the prediction, in words."""
+        return f"{1e3 * self.rms_K:.0f} mK rms" if math.isfinite(self.rms_K) else "not begun"
+
 
 @dataclass(slots=True)
 class _OpenLog:

@@ -20,7 +20,7 @@ from thermicon.base.files.records import shipped_records
 from thermicon.base.words.clean_text import name_fault
 
 from .faults import unusual
-from .layoutfile import LayoutTable, Sink, Supply, read_layout_table
+from .layoutfile import LayoutTable, Sink, Supply, by_name, read_layout_table
 from .rig import AnyRig, Rig, rig_names
 from .rigfile import RigError
 from .usual import unusual_values
@@ -197,7 +197,8 @@ class Layout:
         gaps = [one.gap_m for one in self.elements]
         told = {
             "element": [
-                {"gap_mm": 1e3 * gap} if gap and place == gaps.index(gap) else {} for place, gap in enumerate(gaps)
+                {"name": one.name, "gap_mm": 1e3 * one.gap_m if one.gap_m and place == gaps.index(one.gap_m) else None}
+                for place, one in enumerate(self.elements)
             ],
             "sink": [sink.model_dump() for sink in self.sinks],
             "supply": {} if self.supply is None else self.supply.model_dump(),
@@ -214,7 +215,7 @@ class Layout:
                 if one.place_m is not None and other.place_m is not None:
                     apart_mm = 1e3 * dist(one.place_m, other.place_m)
                     close.append(unusual("beside", names=f"{one.name} and {other.name}", apart=apart_mm))
-        return tuple(each.text for each in (*close, *unusual_values(told, "layout")))
+        return tuple(by_name(each.text, told) for each in (*close, *unusual_values(told, "layout")))
 
     @property
     def alone(self) -> Rig:

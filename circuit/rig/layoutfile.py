@@ -1,5 +1,6 @@
 """The schema of a layout file."""
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from functools import partial
@@ -124,7 +125,18 @@ def read_layout_table(document: Mapping[str, Any], where: str) -> LayoutTable:
         return LayoutTable.model_validate(dict(document))
     except ValidationError as problem:
         faults = key_faults(problem, _nearest, unit_of, likely_unit=partial(likely_unit, of="layout"))
-        raise RigError("\n".join(f"{where}: {fault}" for fault in faults)) from None
+        raise RigError("\n".join(f"{where}: {by_name(fault, document)}" for fault in faults)) from None
+
+
+def by_name(told: str, document: Mapping[str, Any]) -> str:
+    """What is told of a key such as `element.1.gap_mm` as told of the element, or sink, of that name.
+
+    >>> by_name("element.0.gap_mm = 9000 mm: must be at most 5000 mm", {"element": [{"name": "left"}]})
+    'left: gap_mm = 9000 mm: must be at most 5000 mm'
+    """
+    found = re.match(r"(element|sink)\.(\d+)\.", told)
+    name = found and document[found[1]][int(found[2])].get("name")
+    return f"{name}: {told[found.end() :]}" if found and isinstance(name, str) else told
 
 
 def _nearest(parts: Place) -> str:

@@ -1,4 +1,4 @@
-"""Values of a rig that are possible, but so unusual that their unit may have been mistaken."""
+"""Values of a rig so unusual that their unit may have been mistaken."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run on several elements: a trace for each, on one clock."""
+"""A run on several elements with a trace for each on one clock."""
 
 from __future__ import annotations
 

@@ -147,6 +147,9 @@ class LivePanel:
 
     def stop(self, why: str = "a person") -> None:
         """Switch the output off; it is off within a tick of the player."""
+        if not self.on:
+            self._say("nothing plays")
+            return
         self._why = self._why or why
         self._say(f"stopping: {self._why} …", "th-bad")
 

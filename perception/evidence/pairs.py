@@ -1,4 +1,4 @@
-"""The spread of pairs between laboratories, inferred from how six icons were named.
+"""The spread of pairs between laboratories as inferred from how six icons were named.
 
 In a laboratory of the posterior, with either form of memory and pairs of its own, each icon is named in n trials with a
 probability p of its own. What was published are the best and the worst of them, k and l trials of n, and their mean:

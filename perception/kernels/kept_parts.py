@@ -1,4 +1,4 @@
-"""Parts of a long computation that are kept until it is done, so that who dies in between can go on.
+"""Parts of a long computation that are kept until it is done so that who dies in between can go on.
 
 They are pickles, and whoever can write one can run code as the user who reads it: only sealed files of this user's
 private folder are read.

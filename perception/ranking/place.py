@@ -1,4 +1,4 @@
-"""Assumptions about place in a ranking of icons on elements apart, which are none.
+"""The absence of assumptions about place in a ranking of icons on elements apart.
 
 What else people do meanwhile costs a lapse, which is reported beside the prediction.
 """

@@ -114,6 +114,7 @@ def test_a_person_stops_at_any_time(
     (play,) = result.plays
     assert not play.ended
     assert np.isfinite(play.rms_K) == has_begun
+    assert ("not begun" in repr(result)) == (not has_begun) and "nan" not in repr(result)
     rows = (folder / play.files[0]).read_text().splitlines()
     assert float(rows[-1].split(",")[1]) == pytest.approx(stop_s, abs=0.05)
     assert float(rows[-1].split(",")[7]) == 0.0

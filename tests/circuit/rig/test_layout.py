@@ -148,7 +148,7 @@ def test_a_wrong_layout_file_is_refused_with_place_and_cure(change: str, told: s
     [
         ("gap_mm = 1.9", "left, right: with 1.9 mm of bare skin .* nearest millimetre by 0.012 K"),
         ("gap_mm = 0", "left, right: with 0 mm .* by 0.022 K .* nearest millimetre by 0.14 K"),
-        ("gap_mm = 0.05", r"element.0.gap_mm = 0.05 mm: usual are 0.1 to 500 mm; 0.05 looks like m, 50 mm"),
+        ("gap_mm = 0.05", r"left: gap_mm = 0.05 mm: usual are 0.1 to 500 mm; 0.05 looks like m, 50 mm"),
         ("gap_mm = 0.0054", "0.0054 looks like m, 5.4 mm"),
         ("[supply]\ncurrent_limit_A = 900\npower_limit_W = 40", "900 looks like mA, 0.9 A"),
         ("gap_mm = 2.1\n[supply]\ncurrent_limit_A = 99\npower_limit_W = 1999", None),
@@ -163,7 +163,7 @@ def test_numbers_of_a_layout_that_are_not_usual_are_told(tmp_path: Path, change:
 
 def test_an_unusual_gap_is_told_at_its_element(tmp_path: Path) -> None:
     text = OWN.replace("place_mm = [50, 0]", "place_mm = [50, 0]\ngap_mm = 0.05")
-    assert any("element.1.gap_mm = 0.05 mm" in each for each in Layout.load(file_of(tmp_path, text)).warnings)
+    assert any("right: gap_mm = 0.05 mm" in each for each in Layout.load(file_of(tmp_path, text)).warnings)
 
 
 @pytest.mark.parametrize(("at_mm", "told"), [(99, True), (101, False)])

@@ -71,6 +71,13 @@ def test_stop_is_heard(live: LivePlay) -> None:
     assert live.result is not None and live.result.stopped == "the Stop button"
 
 
+def test_stop_where_nothing_plays_does_not_promise_to_stop(live: LivePlay) -> None:
+    live.stop()
+    assert said(live) == "nothing plays"
+    until_off(live, "check")
+    assert said(live).startswith("done")
+
+
 def test_keys_stop_it(live: LivePlay) -> None:
     def press() -> None:
         assert live.key.plays

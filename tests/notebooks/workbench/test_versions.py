@@ -100,6 +100,7 @@ def test_what_is_pinned_in_another_thread_is_never_half_of_a_change(
 def test_stop_on_the_time_line_waits_for_no_other_action() -> None:
     bench: Any = Workbench(TWO, "thenar")
     assert bench.page is not None
+    bench.live.on = True
     stop = Thread(target=bench.design_view.canvas._receive, args=(None, {"type": "stop device"}, ()))
     with design_model.ONE_AT_A_TIME:
         stop.start()
