@@ -1,6 +1,7 @@
 """Refusals and stops of live play."""
 
 import json
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -119,6 +120,20 @@ def test_a_person_stops_at_any_time(
     assert float(rows[-1].split(",")[1]) == pytest.approx(stop_s, abs=0.05)
     assert float(rows[-1].split(",")[7]) == 0.0
     assert json.loads((folder / play.files[2]).read_text())["stopped"] == result.stopped
+
+
+def test_simulated_time_waits_for_a_computer_that_is_busy(ready: Ready, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Threads that read sensors get their turn late: a hundred ticks of simulated time are over sooner."""
+    read, told = SimulatedController.read_second, list[str]()
+
+    def late(line: SimulatedController) -> float:
+        time.sleep(0.005 if "plays arrived" in told else 0.0)
+        return read(line)
+
+    monkeypatch.setattr(SimulatedController, "read_second", late)
+    result = play_export(ready("readme", 10.0), ["arrived", "low-battery"], pause_s=5.0, tell=told.append)
+    assert not result.stopped
+    assert [play.ended for play in result.plays] == [True, True]
 
 
 def test_folders_play_as_the_icons_do_unless_they_are_others(tmp_path: Path) -> None:
