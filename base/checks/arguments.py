@@ -5,6 +5,7 @@ import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import update_wrapper
 from importlib import import_module
+from itertools import product
 from numbers import Integral, Real
 from pathlib import Path
 from traceback import walk_tb
@@ -97,7 +98,7 @@ def checked(function: F) -> F:
     def check(args: tuple[Any, ...], given: dict[str, Any]) -> None:
         if not hints:
             hints.update(_hints(own))
-        values = [*zip(names, args, strict=False), *((name, each) for name in rest for each in args[len(names) :])]
+        values = [*zip(names, args, strict=False), *product(rest, args[len(names) :])]
         for name, value in (*values, *given.items()):
             if name not in hints and name in given:
                 other = IN_PYTHON.get(name)

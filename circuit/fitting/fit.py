@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -93,7 +94,7 @@ def fit(
     rig, read = Rig.of(rig), _logs(logs)
     runs = runs_of(read, rig)
     alone = all(run.driven_by == DISPLAY for run in runs)
-    notes = [note for log in read for note in log.notes] + [note for run in runs for note in run.notes]
+    notes = [*chain.from_iterable(log.notes for log in read), *chain.from_iterable(run.notes for run in runs)]
     runs = aligned(rig, runs)
     if free is None:
         possible = possible_keys(rig, alone)
@@ -119,7 +120,9 @@ def fit(
 
 def _logs(logs: Log | str | Path | pd.DataFrame | Sequence[Log | str | Path | pd.DataFrame]) -> list[Log]:
     several = list(logs) if isinstance(logs, Sequence) and not isinstance(logs, str) else [logs]
-    read = [each for log in several for each in ([log] if isinstance(log, Log) else read_logs(log))]
+    read = list[Log]()
+    for log in several:
+        read += [log] if isinstance(log, Log) else read_logs(log)
     for place, log in enumerate(read):
         for earlier in read[:place]:
             if earlier is log or (log.sha256 and (log.sha256, log.run) == (earlier.sha256, earlier.run)):

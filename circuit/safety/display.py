@@ -224,9 +224,10 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
             longest_s = max(shortest_s, *recovered_s)
             needed = np.minimum(PRACTICAL_S, quickest(longest_s))
             pause_s = lengthened_s(shortest_s, longest_s, lambda longer_s: bool((quickest(longer_s) >= needed).all()))
-        groups = [*(single.checks for ways in singles for single in ways)]
+        groups = [single.checks for single in itertools.chain.from_iterable(singles)]
         groups += [worst_of(tally.checks() for tally in own) for own in tallies]
-        shown = [check.value for checks in groups for check in checks if check.quantity == "display"]
+        checks = itertools.chain.from_iterable(groups)
+        shown = [check.value for check in checks if check.quantity == "display"]
         around, held = (min(shown), max(shown)), (-np.inf, np.inf)
         if self.rates:  # a controller around the module is judged for itself
             held = for_good_C(self.modes, repeating.limits)

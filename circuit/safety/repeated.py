@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cache, partial
+from itertools import chain
 from typing import Generic
 
 import numpy as np
@@ -102,7 +103,7 @@ class Repeating(Generic[Played, States]):
     @property
     def plays(self) -> list[Played]:
         """Every drive in every way."""
-        return [play for ways in self.drives for play in ways]
+        return list(chain.from_iterable(self.drives))
 
     def tallies(self, pause_s: float) -> list[list[Tally]]:
         """Tallies of each drive with a pause between plays: steady, after another one, between the bounds of all."""
@@ -139,7 +140,7 @@ class Repeating(Generic[Played, States]):
         known = self._known.get(pause_s) if endings else None
         try:
             drives = known or self._tallies(pause_s, endings)
-            return all(tally.passes() for drive_tallies in drives for tally in drive_tallies)
+            return all(tally.passes() for tally in chain.from_iterable(drives))
         except UnjudgedError:
             return False
 
@@ -176,7 +177,7 @@ def shortest_pause_s(repeating: Repeating[Played, States]) -> float | None:
     while True:
         failing = set(range(len(repeating.plant.corners)))
         with suppress(UnjudgedError):
-            tallies = [tally for drive_tallies in repeating.tallies(pause_s) for tally in drive_tallies]
+            tallies = list(chain.from_iterable(repeating.tallies(pause_s)))
             if all(tally.passes() for tally in tallies):
                 return pause_s
             failing = {corner for tally in tallies for corner in tally.worst_lanes()}

@@ -12,6 +12,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -176,7 +177,8 @@ class Faulty:
         """A cut-off at both ends and its effect, for a driver at `shares` of its limit, or a current that hangs."""
         low, high = ends_C
         moments, harms, slowest = moments or self.moments(), [], REACTIONS_S[-1]
-        for current_A in (share * full_A for full_A in self.ends_A for share in shares):
+        for full_A, share in product(self.ends_A, shares):
+            current_A = share * full_A
             stuck = moments.stuck_at(current_A)
             values = self.ensemble.watch(current_A, moments.state, STUCK_ROWS_S, moments.rigs)
             slowest = min(slowest, self._reaction_s(stuck, values, low, high))

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_left
 from dataclasses import dataclass
+from itertools import product
 from typing import Generic
 
 import numpy as np
@@ -62,8 +63,7 @@ class Beginning(Generic[Played, States]):
             """Whether display, skin, receptors and hot plate are as near to the bounds of later plays."""
             away_K = [
                 side * (plant.now(play, plant.rested(play, begun, rest_s)) - plant.now(play, bound))
-                for side, begun, bound in zip((1.0, -1.0), self.left, later, strict=True)
-                for play in plays
+                for (side, begun, bound), play in product(zip((1.0, -1.0), self.left, later, strict=True), plays)
             ]
             return bool(np.max(away_K) <= RECOVERED_K)
 
@@ -79,14 +79,10 @@ class Beginning(Generic[Played, States]):
         """The rest in s after which no play that may begin passes a hard limit; None where the longest is too short."""
         drives, rest_s = self.repeating.drives, starts.rest_s
         ends = zip((Before("warm", pause_s), Before("cold", pause_s)), starts.bounds, strict=True)
-        between = (
-            tally
-            for before, state in ends
-            for play in self.repeating.plays
-            for tally in self.repeating.judged(play, before, state, None, endings=False)
-        )
-        if not all(tally.passes() for tally in between):
-            return None
+        for (before, state), play in product(ends, self.repeating.plays):
+            between = self.repeating.judged(play, before, state, None, endings=False)
+            if not all(tally.passes() for tally in between):
+                return None
         while any(hard_of(self.unpowered(number, rest_s)) for number in range(len(drives))):
             if rest_s >= LONGEST_REST_S:
                 return None

@@ -87,11 +87,10 @@ def check_text(check: Check) -> str:
 
 def more_and_cure(hard: Sequence[Check], cures: Sequence[Cure]) -> str:
     """The end of a refusal's text: every exceeded hard limit but the first, and what would cure all of them."""
-    others = [
-        f"{check.quantity} {value}{unit_text(check.unit)} (limit {limit})"
-        for check in hard[1:]
-        for value, limit in (figures(check),)
-    ]
+    others = []
+    for check in hard[1:]:
+        value, limit = figures(check)
+        others.append(f"{check.quantity} {value}{unit_text(check.unit)} (limit {limit})")
     more = f"; also beyond hard limits: {', '.join(others)}" if others else ""
     return f"{more}; use {', '.join(CURES[cure] for cure in cures)}" if cures else more
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -165,10 +166,11 @@ class _Stage:
         currents = np.array([plan.drive.current_A[:-1] for plan in plans])
         states = {
             (r, amperes): state_under_current(network_of(rig), amperes)
-            for r, rig in enumerate(self.rigs)
-            for amperes in {plan.rest_A for plan in plans}
+            for (r, rig), amperes in product(enumerate(self.rigs), {plan.rest_A for plan in plans})
         }
-        return self._play(currents, icons, [states[r, plan.rest_A] for r in range(len(self.rigs)) for plan in plans])
+        return self._play(
+            currents, icons, [states[r, plan.rest_A] for r, plan in product(range(len(self.rigs)), plans)]
+        )
 
     def track(self, icons: Sequence[Icon], control: str, way: str) -> Array:
         """Each rig's own current for the nominal display trajectory, or for the cue itself: as `replay`."""
@@ -181,8 +183,9 @@ class _Stage:
             bases = [float(display[0]) for display in displays]
         else:
             targets = np.array([target_at(icon, base, ends) for icon, base in zip(icons, bases, strict=True)])
-        steady = {(r, base): steady_state(rig, control, base) for r, rig in enumerate(self.rigs) for base in set(bases)}
-        lanes = [steady[r, base] for r in range(len(self.rigs)) for base in bases]
+        pairs = product(enumerate(self.rigs), set(bases))
+        steady = {(r, base): steady_state(rig, control, base) for (r, rig), base in pairs}
+        lanes = [steady[pair] for pair in product(range(len(self.rigs)), bases)]
         states = [state for _, state in lanes]
         if control == "display" and (values := self._superposed(targets, bases, states)) is not None:
             return values

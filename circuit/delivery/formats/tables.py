@@ -226,7 +226,9 @@ def _mask(zones: Iterable[str]) -> str:
 def _commands(profiles: Mapping[str, Setpoints]) -> bytes:
     """The commands that play profiles by the mask of their zones, all from one baseline."""
     first, *_ = profiles.values()
-    levels = [level for each in profiles.values() for level in (each.baseline, *(level for _, level in each.segments))]
+    levels = []
+    for profile in profiles.values():
+        levels += [profile.baseline, *(level for _, level in profile.segments)]
     if len({each.baseline for each in profiles.values()}) > 1:
         raise FormatError("tcs2-serial: all zones have one baseline; give the set one, or the elements one rig")
     loaded = [
