@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 from thermicon.base.words.number_text import signed
@@ -82,8 +83,7 @@ def doubts(fitted: RigFit) -> list[str]:
     keys = [item.key for item in fitted.parameters]
     pairs = [
         f"{keys[a]} and {keys[b]} ({signed(float(fitted.correlation[a, b]), '.2f')})"
-        for a in range(len(keys))
-        for b in range(a + 1, len(keys))
+        for a, b in combinations(range(len(keys)), 2)
         if abs(fitted.correlation[a, b]) > CLOSE
     ]
     return [*lines, *([f"strongly correlated: {', '.join(pairs)}"] if pairs else [])]

@@ -7,6 +7,7 @@ reaction times on the forearm, and from none of the others.
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache, partial
+from itertools import product
 
 import numpy as np
 
@@ -123,8 +124,7 @@ def reaction_times(variable: Variable = "temperature", *, draws: int = DRAWS, se
 
     queries = [
         Query(f"reaction time at {area:g} cm²", channel, "s", how, partial(at, channel, area))
-        for channel in CHANNELS
-        for area in AREAS_CM2
+        for channel, area in product(CHANNELS, AREAS_CM2)
     ]
     queries += [
         Query("exponent of area", c, "1", f"{how}; over {AREAS_CM2} cm²", partial(exponent, c)) for c in CHANNELS

@@ -9,6 +9,7 @@ import math
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from pathlib import Path
 from typing import Literal
 
@@ -142,8 +143,7 @@ def priors_of(variable: Variable) -> Priors:
     source = "the spread between laboratories"
     offsets = tuple(
         Prior(f"{place} {channel}", "SD", "linear", 0.0, 1.0, "laboratories", source)
-        for place in LABORATORIES
-        for channel in CHANNELS
+        for place, channel in product(LABORATORIES, CHANNELS)
     )
     return Priors((*shipped, *offsets))
 

@@ -5,7 +5,7 @@ import re
 import warnings
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import chain, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -166,7 +166,8 @@ def read_trials(
                 f"{file}: participant {quoted(person)} has the same trials twice, with the same icons and answers; "
                 "remove the copy, or name the blocks in a column block"
             )
-        np.add.at(counts[place], tuple(np.array([pair for run in own for pair in run.values()]).T), 1.0)
+        pairs = list(chain.from_iterable(run.values() for run in own))
+        np.add.at(counts[place], tuple(np.array(pairs).T), 1.0)
     if not counts[..., :-2].any():
         if strange[0]:
             _icon(strange[0], "presented", places, strange[1])

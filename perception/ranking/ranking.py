@@ -6,7 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import permutations
+from itertools import permutations, product
 from typing import Any
 
 import numpy as np
@@ -251,8 +251,7 @@ class Ranking(Drawn, Tabled):
         own, *others = self.felt.by_form.mean(axis=1)
         return tuple(
             (self.labels[i], self.labels[j])
-            for other in others
-            for i, j in permutations(range(len(own)), 2)
+            for other, (i, j) in product(others, permutations(range(len(own)), 2))
             if own[i] > own[j] + PERCENTAGE_POINT and other[j] > other[i] + PERCENTAGE_POINT
         )
 

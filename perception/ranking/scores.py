@@ -237,12 +237,9 @@ def assemble(
         own = [traces[place] for _, place in played]
         most = max((place for _, place in played), key=lambda place: percepts[place].detected_probability)
         safety = [judge_safety(trace) for trace in own]
-        objections = [
-            (", ".join(elements), why)
-            for (elements, _), verdict, trace in zip(played, safety, own, strict=True)
-            for why in (verdict.reason, trace.reason)
-            if why
-        ]
+        objections = list[tuple[str, str]]()
+        for (elements, _), verdict, trace in zip(played, safety, own, strict=True):
+            objections += [(", ".join(elements), why) for why in (verdict.reason, trace.reason) if why]
         cold, warm = (max(own, key=lambda trace: abs(peak_change_K(trace, channel))) for channel in CHANNELS)
         scored.append(
             IconScore(

@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import chain, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,17 +94,16 @@ def offers(of: Screening, target: float, largest: float, rejected: Rejections) -
     # An icon that another one plays would change that one too.
     played = {one.name for icon in icons for one in all_played(icon.statements)}
     free = [place for place in of.pair if icons[place].name not in played]
-    ways = [
-        (place, number, up)
-        for place in free
-        for number in numbers_of(icons[place], baseline_C(icons[place], of.kept.rig))
-        for up in (True, False)
-    ]
+    ways = list[Way]()
+    for place in free:
+        ways += product([place], numbers_of(icons[place], baseline_C(icons[place], of.kept.rig)), (True, False))
     logs = np.log(largest) * np.linspace(0.0, 1.0, GRID + 1)[1:] ** 2
-    tried = [
-        one for w, way in enumerate(ways) for g, log in enumerate(logs) for one in changed(of.kept, way, w, g, log)
-    ]
-    good = _good(of, [*tried, *(one for place in free for one in _repeats(of.kept, place))], target, rejected)
+    tried = list[CandidateEdit]()
+    for (w, way), (g, log) in product(enumerate(ways), enumerate(logs)):
+        tried += changed(of.kept, way, w, g, log)
+    for place in free:
+        tried += _repeats(of.kept, place)
+    good = _good(of, tried, target, rejected)
     found = [one for one in good if one.way is None]
     first: dict[int, int] = {}
     for one in good:
@@ -115,10 +115,12 @@ def offers(of: Screening, target: float, largest: float, rejected: Rejections) -
     spans = {w: (low, high) for w, (low, high) in spans.items() if low <= most}
     for _ in range(ROUNDS):
         middle = {w: 0.5 * (low + high) for w, (low, high) in spans.items()}
-        trial = [one for w, log in middle.items() for one in changed(of.kept, ways[w], w, 0, log)]
+        trial = list(chain.from_iterable(changed(of.kept, ways[w], w, 0, log) for w, log in middle.items()))
         done = {one.way for one in _good(of, trial, target, rejected)}
         spans = {w: (low, middle[w]) if w in done else (middle[w], high) for w, (low, high) in spans.items()}
-    last = [one for w, (_, high) in spans.items() for d in (2, 3) for one in changed(of.kept, ways[w], w, d, high, d)]
+    last = list[CandidateEdit]()
+    for (w, (_, high)), digits in product(spans.items(), (2, 3)):
+        last += changed(of.kept, ways[w], w, digits, high, digits)
     # Of each number the edit with the fewest digits; those come first.
     shortest: dict[int | None, CandidateEdit] = {}
     for one in _good(of, last, target, rejected):
@@ -151,7 +153,8 @@ def _repeats(kept: Pool, place: int) -> list[CandidateEdit]:
     def made(count: int) -> tuple[Icon, str, str]:
         return repeated(icon, count), once, f"repeat {count} {{ {once} }}"
 
-    return [one for n in REPEATS for one in _valid(kept, place, partial(made, n), math.log(n), None, n)]
+    edits = (_valid(kept, place, partial(made, n), math.log(n), None, n) for n in REPEATS)
+    return list(chain.from_iterable(edits))
 
 
 def _valid(

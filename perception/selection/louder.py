@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import product
 
 import numpy as np
 
@@ -53,9 +54,11 @@ def louder(ranking: Ranking, names: Sequence[str], shares: Sequence[float]) -> I
 def _tried(kept: Pool, place: int, nominal: Observer) -> list[tuple[CandidateEdit, float, Trace]]:
     """Edits of an icon, the cheapest first, each with how often it is reported and its trace."""
     numbers = numbers_of(kept.icons[place], baseline_C(kept.icons[place], kept.rig))
-    ways = [(place, number, up) for number in numbers for up in (True, False)]
+    ways = list(product([place], numbers, (True, False)))
     logs = np.log(LARGEST) * np.arange(1, STEPS + 1) / STEPS
-    edits = [one for w, way in enumerate(ways) for log in logs for one in changed(kept, way, w, 0, log, 2)]
+    edits = list[CandidateEdit]()
+    for (w, way), log in product(enumerate(ways), logs):
+        edits += changed(kept, way, w, 0, log, 2)
     if not edits:
         return []
     felt = Pool.of([one.icon for one in edits], kept.rig, nominal)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -125,8 +126,7 @@ class _Bisection:
         """Of the choices with the same nearest pair the one whose next is widest: the pair is fixed, then ignored."""
         rest = _Bisection(self.d.copy(), self.count, self.must, self.limits)
         while len(rest.must) < self.count:
-            members = sorted(chosen)
-            _, a, b = min((rest.d[a, b], a, b) for k, a in enumerate(members) for b in members[k + 1 :])
+            _, a, b = min((rest.d[a, b], a, b) for a, b in combinations(sorted(chosen), 2))
             rest.d[a, b] = rest.d[b, a] = math.inf
             rest.must = tuple(dict.fromkeys((*rest.must, a, b)))
             if not math.isfinite(nearest_pair(rest.d, chosen)):
