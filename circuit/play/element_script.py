@@ -1,4 +1,4 @@
-"""The script that plays an export on several elements with all that a script for one has."""
+"""The script that plays an export on several elements with all that a script for one element has."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The guard of several display elements on one clock by which what stops one stops all."""
+"""The guard of several display elements on one clock: what stops one element stops all."""
 
 from __future__ import annotations
 

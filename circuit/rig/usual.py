@@ -1,4 +1,4 @@
-"""Values of a rig so unusual that their unit may have been mistaken."""
+"""Possible values of a rig that are so unusual that their unit may have been mistaken."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The parser of cue text with tables that are kept by the versions that made them.
+"""The parser of cue text with tables that are kept for the versions that made them.
 
 Tables are a pickle, and whoever can write it can run code as the user who reads it: only a file that this user wrote
 into a private folder is read, and only if it is whole.

@@ -1,4 +1,4 @@
-"""A spatial icon of one ordinary icon for each display element that plays."""
+"""A spatial icon: one ordinary icon on one clock for each display element that plays."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace

@@ -1,4 +1,4 @@
-"""Icons that are felt on several surfaces of skin apart from one another.
+"""Icons that are felt on several separate surfaces of skin.
 
 Each surface is felt and remembered for itself; nothing is assumed about place, which is certain. With tracks a and b of
 two icons on surface s,

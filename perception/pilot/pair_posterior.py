@@ -1,4 +1,4 @@
-r"""What answers say of the pairs of a laboratory given its constants.
+r"""The posterior of the pairs of a laboratory from its answers for known constants.
 
 The pooled answers to an icon are multinomial. Their ln odds against its own name are those of the laboratory's people,
 plus τz − τ²/2 of the pair, what a smooth prediction misses, and what J participants happen to be:
