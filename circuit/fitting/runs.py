@@ -151,21 +151,21 @@ def _run(log: Log, driven_by: str, sensors: Sequence[Log], rig: Rig | None) -> R
             f"{log.name}: {driven_by} is {drive[0]:g} in every row: nothing changes, so that nothing can be fitted; "
             f"log a run that warms and cools, such as the shipped cue calibration-drive"
         )
-    for each in (log, *sensors):
-        _check_exchanged(each)
+    for recording in (log, *sensors):
+        _check_exchanged(recording)
         if rig is not None:
-            _check_probes(each, rig)
+            _check_probes(recording, rig)
     begin, alone = float(time[0]), driven_by == DISPLAY
     step = round(float(np.median(np.diff(time))), 9)  # differences of late times are off by rounding
     channels = []
-    for clock, each in enumerate((log, *sensors)):
+    for clock, recording in enumerate((log, *sensors)):
         rows = slice(None) if clock else part
-        for name in (name for name in each.measured if _deeper(name) or not alone):
-            values = each.column(name)[rows]
+        for name in (name for name in recording.measured if _deeper(name) or not alone):
+            values = recording.column(name)[rows]
             there = np.flatnonzero(np.isfinite(values))
             there = there[:: max(1, -(-len(there) // MOST_READINGS))]
             if there.size:
-                channels.append(Channel(name, each.name, clock, each.time_s[rows][there], values[there]))
+                channels.append(Channel(name, recording.name, clock, recording.time_s[rows][there], values[there]))
     unknown, phase, points = None, None, False
     if alone:
         unknown = unknown_display(time, drive)

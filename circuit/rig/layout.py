@@ -194,7 +194,7 @@ class Layout:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences on what is unusual about gaps, sinks and the supply; rigs have warnings of their own."""
-        gaps = [one.gap_m for one in self.elements]
+        gaps = [element.gap_m for element in self.elements]
         told = {
             "element": [
                 {"name": one.name, "gap_mm": 1e3 * one.gap_m if one.gap_m and place == gaps.index(one.gap_m) else None}
@@ -208,14 +208,14 @@ class Layout:
             if gap is not None and 1e3 * gap < NEIGHBOURS[-1][0]:
                 at_mm, mean, near = zip(*NEIGHBOURS, strict=True)
                 by = {"mean": np.interp(1e3 * gap, at_mm, mean), "near": np.interp(1e3 * gap, at_mm, near)}
-                names = ", ".join(one.name for one in self.elements if one.gap_m == gap)
+                names = ", ".join(element.name for element in self.elements if element.gap_m == gap)
                 close.append(unusual("close", names=names, gap=1e3 * gap, **by))
         if self.surfaces == "apart":
-            for one, other in ((self.elements[a], self.elements[b]) for a, b in self.near):
-                if one.place_m is not None and other.place_m is not None:
-                    apart_mm = 1e3 * dist(one.place_m, other.place_m)
-                    close.append(unusual("beside", names=f"{one.name} and {other.name}", apart=apart_mm))
-        return tuple(by_name(each.text, told) for each in (*close, *unusual_values(told, "layout")))
+            for element, other in ((self.elements[a], self.elements[b]) for a, b in self.near):
+                if element.place_m is not None and other.place_m is not None:
+                    apart_mm = 1e3 * dist(element.place_m, other.place_m)
+                    close.append(unusual("beside", names=f"{element.name} and {other.name}", apart=apart_mm))
+        return tuple(each.text for each in (*close, *unusual_values(told, "layout")))
 
     @property
     def alone(self) -> Rig:

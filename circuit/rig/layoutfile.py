@@ -73,7 +73,7 @@ class LayoutTable(KeyTable):
 
     def faults(self) -> Iterable[str]:
         """Names that mean two things or nothing, elements that are like each other in a circle, impossible places."""
-        names, sinks = [each.name for each in self.element], [each.name for each in self.sink]
+        names, sinks = [item.name for item in self.element], [item.name for item in self.sink]
         for what, listed in (("element", names), ("sink", sinks)):
             for name in (name for name, count in Counter(listed).items() if count > 1):
                 yield f"two {what}s are called {name}; give each a name of its own"
@@ -83,23 +83,23 @@ class LayoutTable(KeyTable):
             yield f"lapse = {self.lapse:g} is no share of trials below 1; for per cent, write {self.lapse / 100:g}"
         if "all" in names:
             yield '"all" means every element, and cannot be the name of one; give that element another name'
-        likes = {each.name: each.like for each in self.element}
-        for each in self.element:
-            if each.like is not None and each.like not in likes:
-                yield f"{each.name} is like {each.like}, which is not an element; {did_you_mean(each.like, names)}"
-            elif len(self.chain(each)) > len(names):
-                yield f"{each.name} is like {each.like}, in a circle that has no rig; give one of the elements a rig"
-            if each.sink is not None and each.sink not in sinks:
-                cure = did_you_mean(each.sink, sinks) if sinks else "remove its sink, or describe it in the file"
-                yield f"{each.name} is on {each.sink}, which is no [[sink]]; {cure}"
-            if len(each.place_mm) != (2 if self.around_mm is None else 1):
+        likes = {item.name: item.like for item in self.element}
+        for item in self.element:
+            if item.like is not None and item.like not in likes:
+                yield f"{item.name} is like {item.like}, which is not an element; {did_you_mean(item.like, names)}"
+            elif len(self.chain(item)) > len(names):
+                yield f"{item.name} is like {item.like}, in a circle that has no rig; give one of the elements a rig"
+            if item.sink is not None and item.sink not in sinks:
+                cure = did_you_mean(item.sink, sinks) if sinks else "remove its sink, or describe it in the file"
+                yield f"{item.name} is on {item.sink}, which is no [[sink]]; {cure}"
+            if len(item.place_mm) != (2 if self.around_mm is None else 1):
                 shape = "[x, y]" if self.around_mm is None else "a length around the circle, one number"
-                yield f"{each.name}: place_mm is {shape}"
-        for sink in (sink for sink in sinks if sink not in {each.sink for each in self.element}):
+                yield f"{item.name}: place_mm is {shape}"
+        for sink in (sink for sink in sinks if sink not in {item.sink for item in self.element}):
             yield f"no element is on the sink {sink}; remove it, or name it as sink of an element"
-        if any(len(each.place_mm) != (2 if self.around_mm is None else 1) for each in self.element):
+        if any(len(item.place_mm) != (2 if self.around_mm is None else 1) for item in self.element):
             return
-        places = {each.name: tuple(round(1e6 * length) for length in self.point_m(each)) for each in self.element}
+        places = {item.name: tuple(round(1e6 * length) for length in self.point_m(item)) for item in self.element}
         if twice := next((place for place, count in Counter(places.values()).items() if count > 1), None):
             here = [name for name, place in places.items() if place == twice]
             yield f"{' and '.join(here)} are at one place; give each a place_mm of its own"

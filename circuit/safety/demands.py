@@ -151,17 +151,17 @@ class Demands:
     @staticmethod
     def strictest(demands: Sequence[Demands]) -> Demands:
         """What keeps each of several drives safe that are played by one device; without their faults."""
-        cuts = [each.cut_off_display_C for each in demands]
-        held = [each.held_cut_off_display_C for each in demands if each.held_cut_off_display_C]
-        limits_A = [each.current_limit_A for each in demands if each.current_limit_A]
-        rests = [each.rest_before_first_play_s for each in demands]
-        pauses = [each.pause_at_least_s for each in demands]
-        zeros = [each.zero_current_at_most_s for each in demands if each.zero_current_at_most_s is not None]
+        cuts = [demand.cut_off_display_C for demand in demands]
+        held = [demand.held_cut_off_display_C for demand in demands if demand.held_cut_off_display_C]
+        limits_A = [demand.current_limit_A for demand in demands if demand.current_limit_A]
+        rests = [demand.rest_before_first_play_s for demand in demands]
+        pauses = [demand.pause_at_least_s for demand in demands]
+        zeros = [demand.zero_current_at_most_s for demand in demands if demand.zero_current_at_most_s is not None]
         # One test as a whole: the fall was found for its current and its time.
-        tests = [each.polarity_check for each in demands if each.polarity_check]
+        tests = [demand.polarity_check for demand in demands if demand.polarity_check]
         tests.sort(key=lambda test: (not test.needed, test.test_current_A * test.test_s))
         return Demands(
-            watchdog_s=min(each.watchdog_s for each in demands),
+            watchdog_s=min(demand.watchdog_s for demand in demands),
             cut_off_display_C=CutOff(
                 max(cut.low for cut in cuts), min(cut.high for cut in cuts), min(cut.react_within_s for cut in cuts)
             ),

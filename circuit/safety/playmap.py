@@ -144,8 +144,8 @@ def least_bound(maps: Sequence[PlayMap], starts_C: Sequence[Array], side: float)
     NaN where some play heats without limit when repeated; raises UnjudgedError where none does and no bound is found.
     """
     most = np.max([side * start for start in starts_C], axis=0)
-    matrices = np.stack([np.zeros_like(maps[0].matrix), *(each.matrix for each in maps)])
-    constants = np.stack([most, *(side * each.constant for each in maps)])
+    matrices = np.stack([np.zeros_like(maps[0].matrix), *(play_map.matrix for play_map in maps)])
+    constants = np.stack([most, *(side * play_map.constant for play_map in maps)])
     now, chosen = most, np.full(most.shape, -1)
     rig, node = np.ogrid[: most.shape[0], : most.shape[1]]
     for _ in range(MOST_CHOICES):
@@ -160,7 +160,7 @@ def least_bound(maps: Sequence[PlayMap], starts_C: Sequence[Array], side: float)
     after = (np.einsum("kcij,cj->kci", matrices, now) + constants).max(axis=0)
     holds = (after <= now + NEAR_K).all(axis=1)
     for corner in np.flatnonzero(~holds).tolist():
-        if all(_settles(each.matrix[corner]) for each in maps):
+        if all(_settles(play_map.matrix[corner]) for play_map in maps):
             raise UnjudgedError(NO_BOUND)
     return side * np.where(holds[:, np.newaxis], now, np.nan)
 

@@ -118,23 +118,23 @@ class Scope:
     def statement(self, tree: Any, path: Path) -> Statement | Broken:
         """Return one statement, and remember the places of its parts."""
         builder, place = self.builder, span(tree)
-        made: Statement | Broken | None = None
+        built: Statement | Broken | None = None
         if rule_of(tree) == "repeat":
-            made = self.repeat(tree, path)
+            built = self.repeat(tree, path)
         elif rule_of(tree) in BLOCKS:
             self.block(rule_of(tree), (place[0], place[0] + len(rule_of(tree))))
         elif self.elements and rule_of(tree) in ("play", "total"):
             self.not_on_elements(rule_of(tree), place)
         elif rule_of(tree) == "play":
             icon = self.resolve(str(tree.children[0]), span(tree.children[0]))
-            made = Play(icon, builder.at(place)) if icon else None
+            built = Play(icon, builder.at(place)) if icon else None
         elif rule_of(tree):
-            made = self.leaf(tree, path)
-        self.broken |= made is None
-        made = Broken(builder.at(place)) if made is None else made
-        builder.kept.append(made)
-        builder.places[id(made)] = builder.parts(tree, place)
-        return made
+            built = self.leaf(tree, path)
+        self.broken |= built is None
+        built = Broken(builder.at(place)) if built is None else built
+        builder.kept.append(built)
+        builder.places[id(built)] = builder.parts(tree, place)
+        return built
 
     def block(self, word: str, place: Place) -> None:
         """Report a block for elements where there are none, or inside of another block."""
