@@ -204,15 +204,15 @@ def judged(row: TargetRow, was: Published, table: RecordTable, shown: ShownEvide
         return shown.find(by, row.experiment, row.quantity, channel, row.predicted_where)
 
     if row.apply in PAIRED:
-        made = _both(row, found("cold"), found("warm"))
+        prediction = _both(row, found("cold"), found("warm"))
     else:
-        made = found(row.channel)
+        prediction = found(row.channel)
         if row.apply:
             factor = table.one(row.times).central if row.apply == "times" else -1.0 if row.apply == "negative" else 1.0
-            made = _linear(made, factor, 1.0 if row.apply == "one plus" else 0.0)
-    made = replace(made, unit=row.unit)
-    held = [judge_row(row, each, was).holds is True for each in made.draws] if row.judged else []
-    return JudgedRow(made, judge_row(row, made.value, was), sum(held) / len(held) if held else None)
+            prediction = _linear(prediction, factor, 1.0 if row.apply == "one plus" else 0.0)
+    prediction = replace(prediction, unit=row.unit)
+    held = [judge_row(row, each, was).holds is True for each in prediction.draws] if row.judged else []
+    return JudgedRow(prediction, judge_row(row, prediction.value, was), sum(held) / len(held) if held else None)
 
 
 def _both(row: TargetRow, cold: Predicted, warm: Predicted) -> Predicted:

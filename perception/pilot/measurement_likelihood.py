@@ -90,7 +90,7 @@ def log_likelihood(measured: Measurements, each: SimulatedMeasurements, groups: 
     shared, spread = shared_covariance(measured), person_covariance(measured, each.between)
     count = len(shared)
     precision, weighted = np.zeros((len(each.mean), count, count)), np.zeros((len(each.mean), count))
-    found = np.zeros(len(each.mean))
+    total = np.zeros(len(each.mean))
     for group in groups or groups_of(measured):
         used = group.conditions
         error = log_errors(group.stated, group.trials, each.within[:, used])
@@ -98,13 +98,13 @@ def log_likelihood(measured: Measurements, each: SimulatedMeasurements, groups: 
         inverse = np.linalg.inv(own)
         off = group.mean - each.mean[:, used]
         along = np.einsum("nkl,nl->nk", inverse, off)
-        found -= 0.5 * group.count * (np.linalg.slogdet(own)[1] + (along * off).sum(axis=1))
-        found -= 0.5 * np.einsum("nkl,kl->n", inverse, group.scatter)
+        total -= 0.5 * group.count * (np.linalg.slogdet(own)[1] + (along * off).sum(axis=1))
+        total -= 0.5 * np.einsum("nkl,kl->n", inverse, group.scatter)
         precision[:, used[:, None], used] += group.count * inverse
         weighted[:, used] += group.count * along
     inner = np.linalg.inv(shared) + precision
-    found += 0.5 * (weighted * np.linalg.solve(inner, weighted[:, :, None])[:, :, 0]).sum(axis=1)
-    return np.asarray(found - 0.5 * np.linalg.slogdet(inner)[1])
+    total += 0.5 * (weighted * np.linalg.solve(inner, weighted[:, :, None])[:, :, 0]).sum(axis=1)
+    return np.asarray(total - 0.5 * np.linalg.slogdet(inner)[1])
 
 
 def log_errors(stated: Array, trials: Array, within: Array) -> Array:

@@ -216,14 +216,14 @@ def compare(trials: Trials, played: Confusions, *, seed: int = 0) -> Fit:
     pooled, seen = each.sum(axis=1), trials.pooled
     expected = seen.sum(axis=1)[:, None] * played.pooled.mean(axis=0)
     shown = expected > 0.0
-    off = [float(((one - expected)[shown] ** 2 / expected[shown]).sum()) for one in (seen, *pooled)]
+    off = [float(((counts - expected)[shown] ** 2 / expected[shown]).sum()) for counts in (seen, *pooled)]
     answered = trials.counts.sum(axis=(1, 2)).clip(1.0)
-    spread = [(np.trace(one, axis1=1, axis2=2) / answered).std() for one in (trials.counts, *each)]
+    spread = [(np.trace(counts, axis1=1, axis2=2) / answered).std() for counts in (trials.counts, *each)]
     return Fit(
         p=share_as_far(off),
         p_people=share_as_far(spread) if len(trials.participants) >= LEAST_PEOPLE else None,
         proportion_correct=median_three(np.trace(pooled, axis1=1, axis2=2) / seen.sum()),
-        information_bits_plugin=median_three(np.array([plugin_information(one)[0] for one in pooled])),
+        information_bits_plugin=median_three(np.array([plugin_information(counts)[0] for counts in pooled])),
         pairs=tuple(_pairs(trials, seen, pooled)),
         **({} if trials.forced else compare_reports(trials, played, seed=seed)),
     )

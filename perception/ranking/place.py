@@ -1,6 +1,7 @@
 """Assumptions about place in a ranking of icons on elements apart.
 
-Nothing is assumed about place itself. What else people do meanwhile costs a lapse, which is reported beside the prediction.
+Nothing is assumed about place itself. What else people do meanwhile costs a lapse, which is reported beside the
+prediction.
 """
 
 from __future__ import annotations

@@ -104,7 +104,7 @@ def offers(of: Screening, target: float, largest: float, rejected: Rejections) -
     for place in free:
         tried += _repeats(of.kept, place)
     good = _good(of, tried, target, rejected)
-    found = [one for one in good if one.way is None]
+    repeats = [one for one in good if one.way is None]
     first: dict[int, int] = {}
     for one in good:
         if one.way is not None:
@@ -125,7 +125,7 @@ def offers(of: Screening, target: float, largest: float, rejected: Rejections) -
     shortest: dict[int | None, CandidateEdit] = {}
     for one in _good(of, last, target, rejected):
         shortest.setdefault(one.way, one)
-    best = {(one.place, one.new): one for one in sorted([*found, *shortest.values()], key=lambda one: -one.cost)}
+    best = {(one.place, one.new): one for one in sorted([*repeats, *shortest.values()], key=lambda one: -one.cost)}
     return sorted(best.values(), key=lambda one: (one.cost, one.place, one.new))
 
 
@@ -176,14 +176,14 @@ def _good(of: Screening, tried: Sequence[CandidateEdit], target: float, rejected
     """Those that part the pair for the nominal person, are safe and reached, and leave the others apart."""
     if not tried:
         return []
-    longest = max(float(of.kept.durations_s[one.place]) + one.added_s for one in tried)
+    longest = max(float(of.kept.durations_s[edit.place]) + edit.added_s for edit in tried)
     end_s = max(of.kept.end_s, run_end_s([longest], POOL_HZ))
-    felt = Pool.of([one.icon for one in tried], of.kept.rig, of.observer, end_s=end_s)
+    felt = Pool.of([edit.icon for edit in tried], of.kept.rig, of.observer, end_s=end_s)
     good = []
-    for trace, one, row in zip(felt.traces, tried, felt.dprimes(of.kept, of.memory, of.observer), strict=True):
-        other = of.pair[1] if one.place == of.pair[0] else of.pair[0]
-        fallen = worse(of.now[one.place], row, of.wanted)
-        fallen[[one.place, other]] = False
+    for trace, edit, row in zip(felt.traces, tried, felt.dprimes(of.kept, of.memory, of.observer), strict=True):
+        other = of.pair[1] if edit.place == of.pair[0] else of.pair[0]
+        fallen = worse(of.now[edit.place], row, of.wanted)
+        fallen[[edit.place, other]] = False
         parted = bool(row[other] >= target)
         # Judged only where it matters, since it takes long.
         if not (parted or row[other] > rejected.closest) or objection(trace) is not None:
@@ -193,7 +193,7 @@ def _good(of: Screening, tried: Sequence[CandidateEdit], target: float, rejected
         elif fallen.any():
             rejected.opposed = True
         else:
-            good.append(replace(one, apart=row))
+            good.append(replace(edit, apart=row))
     return good
 
 

@@ -160,7 +160,7 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
     refused: set[tuple[int, str]] = set()
 
     def untried() -> list[CandidateEdit]:
-        return [one for one in offers(screening, target, largest, rejected) if (one.place, one.new) not in refused]
+        return [edit for edit in offers(screening, target, largest, rejected) if (edit.place, edit.new) not in refused]
 
     for _ in range(MOST_CONFIRMED):
         offered = untried()
@@ -169,21 +169,21 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
             offered = untried()
         if not offered:
             break
-        one = offered[0]
-        end_s = max(kept.end_s, run_end_s([float(kept.durations_s[one.place]) + one.added_s], POOL_HZ))
-        parted, harmed = _with_people(ranking, screening, one, crowd, end_s)
-        if parted >= wanted and not harmed and parse(str(one.icon))[one.icon.name].statements == one.icon.statements:
+        edit = offered[0]
+        end_s = max(kept.end_s, run_end_s([float(kept.durations_s[edit.place]) + edit.added_s], POOL_HZ))
+        parted, harmed = _with_people(ranking, screening, edit, crowd, end_s)
+        if parted >= wanted and not harmed and parse(str(edit.icon))[edit.icon.name].statements == edit.icon.statements:
             # In batches, as the set itself was ranked: of many icons and people at once there is no room.
             people = min(job.people, MOST_RECOUNTED)
-            few = replace(job, members=tuple(_edited(ranking, one)), end_s=end_s, people=people)
+            few = replace(job, members=tuple(_edited(ranking, edit)), end_s=end_s, people=people)
             new = collect_batches(few, 1, lambda: None).felt_and_named
             gain = float(new.mean() - ranking.felt.felt_and_named[: few.people].mean())
             if gain <= ROUNDING:
                 return NoEdit(f"separating them changes felt and named of the set by {100 * gain:+.1f} points only")
-            recounted = _recounted(ranking, one, crowd, end_s)
-            return Edit(one.icon.name, one.old, one.new, one.cost, one.added_s, parted, one.icon, recounted)
+            recounted = _recounted(ranking, edit, crowd, end_s)
+            return Edit(edit.icon.name, edit.old, edit.new, edit.cost, edit.added_s, parted, edit.icon, recounted)
         rejected.opposed |= harmed
-        refused.add((one.place, one.new))
+        refused.add((edit.place, edit.new))
         if parted < wanted:
             confirmed = max(confirmed, parted)
             target *= 1.002 * min(wanted / max(parted, 1e-6), 1.5)

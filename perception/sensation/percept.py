@@ -231,10 +231,10 @@ def perceive_many(
 def on_one_clock(percepts: Sequence[Percept]) -> tuple[Array, Array, float]:
     """Sensations (percepts, n_time), cold and warm, and their step in s; shorter ones are held at their end."""
     dt = percepts[0].dt_s
-    for each in percepts:
-        if not math.isclose(each.dt_s, dt, rel_tol=1e-9):
-            raise ValueError(f"percepts are on clocks of {dt:g} s and {each.dt_s:g} s: simulate all at one rate")
-    n = max(each.psi_cold.size for each in percepts)
-    cold = np.stack([held(each.psi_cold, n) for each in percepts])
-    warm = np.stack([held(each.psi_warm, n) for each in percepts])
+    for percept in percepts:
+        if not math.isclose(percept.dt_s, dt, rel_tol=1e-9):
+            raise ValueError(f"percepts are on clocks of {dt:g} s and {percept.dt_s:g} s: simulate all at one rate")
+    n = max(percept.psi_cold.size for percept in percepts)
+    cold = np.stack([held(percept.psi_cold, n) for percept in percepts])
+    warm = np.stack([held(percept.psi_warm, n) for percept in percepts])
     return cold, warm, dt
