@@ -131,14 +131,14 @@ def summarise(draws: PosteriorDraws) -> tuple[Summary, ...]:
 
 def posterior_table() -> str:
     """Median and 95 % interval of every constant in the draws, beside the maximum; offsets of laboratories last."""
-    maxima = {each.name: each.value for each in load_constants()}
+    maxima = {item.name: item.value for item in load_constants()}
     rows = []
-    for each in summarise(PosteriorDraws.load()):
-        unit = "" if each.unit == "SD" else UNITS.get(each.unit, each.unit)
-        remark = "edge of its prior" if each.at_edge else "not moved" if each.unmoved else ""
-        median = f"{number(each.median)} {unit}".strip()
-        ends = span(each.low, each.high)
-        rows.append((each.name, median, ends, number(maxima[each.name]), f"{each.narrowed:.2f}", remark))
+    for item in summarise(PosteriorDraws.load()):
+        unit = "" if item.unit == "SD" else UNITS.get(item.unit, item.unit)
+        remark = "edge of its prior" if item.at_edge else "not moved" if item.unmoved else ""
+        median = f"{number(item.median)} {unit}".strip()
+        ends = span(item.low, item.high)
+        rows.append((item.name, median, ends, number(maxima[item.name]), f"{item.narrowed:.2f}", remark))
     return markdown(("constant", "median", "95 %", "at the maximum", "SD left", ""), rows)
 
 
@@ -165,14 +165,14 @@ def _names(found: Sequence[Summary]) -> str:
 def sampled_left_out_table(*, spreads: bool) -> str:
     """Spreads, or all other rows, by draws that never saw their experiment; misses of the 95 % interval are bold."""
     rows = []
-    for each in load_left_out():
-        if (each.row.kind == "spread") is not spreads:
+    for case in load_left_out():
+        if (case.row.kind == "spread") is not spreads:
             continue
-        mark = "" if each.covered(0.95) else "**"
-        unit = {"1": "", "0-100": "of 100"}.get(each.unit, each.unit)
-        naive = "" if math.isnan(each.naive) else signed(each.log_score - each.naive, 2)
-        numbers = number(each.published), number(each.median), span(each.lower, each.upper), span(each.low, each.high)
-        rows.append((each.experiment, f"{mark}{each.label}{mark}", unit, *numbers, signed(each.log_score, 2), naive))
+        mark = "" if case.covered(0.95) else "**"
+        unit = {"1": "", "0-100": "of 100"}.get(case.unit, case.unit)
+        naive = "" if math.isnan(case.naive) else signed(case.log_score - case.naive, 2)
+        numbers = number(case.published), number(case.median), span(case.lower, case.upper), span(case.low, case.high)
+        rows.append((case.experiment, f"{mark}{case.label}{mark}", unit, *numbers, signed(case.log_score, 2), naive))
     return markdown(
         ("key", "row", "unit", "published", "predicted", "50 %", "95 %", "log score", "over the naive baseline"), rows
     )
@@ -181,14 +181,14 @@ def sampled_left_out_table(*, spreads: bool) -> str:
 def scores_sentence() -> str:
     """Coverage, widths and log scores of left-out predictions of the rows by which they are judged."""
     every = load_left_out()
-    rows = [each for each in every if each.row.judges]
-    spread = [each for each in every if each.row.kind == "spread"]
-    inside, wide = ([sum(each.covered(share) for each in some) for share in (0.5, 0.95)] for some in (rows, spread))
-    ratios = sorted(each.high / each.low for each in rows if each.row.log)
-    compared = [each for each in every if not math.isnan(each.naive)]
-    gain = sum(each.log_score - each.naive for each in compared) / len(compared)
-    weighted = dict.fromkeys(each.experiment for each in every if each.method == "weights")
-    kinds = ", ".join(f"{count} {kind}s" for kind, count in Counter(each.row.kind for each in rows).items())
+    rows = [scored for scored in every if scored.row.judges]
+    spread = [scored for scored in every if scored.row.kind == "spread"]
+    inside, wide = ([sum(scored.covered(share) for scored in some) for share in (0.5, 0.95)] for some in (rows, spread))
+    ratios = sorted(scored.high / scored.low for scored in rows if scored.row.log)
+    compared = [scored for scored in every if not math.isnan(scored.naive)]
+    gain = sum(scored.log_score - scored.naive for scored in compared) / len(compared)
+    weighted = dict.fromkeys(scored.experiment for scored in every if scored.method == "weights")
+    kinds = ", ".join(f"{count} {kind}s" for kind, count in Counter(scored.row.kind for scored in rows).items())
     return (
         f"{inside[0]} of {len(rows)} rows ({kinds}) lie inside their 50 % interval and {inside[1]} inside their "
         f"95 % interval; of the {len(spread)} spreads, which judge nothing, {wide[0]} and {wide[1]}. E8 and signs are "

@@ -44,20 +44,20 @@ def plot_stack(rig: Rig, width_mm: float = 107.0) -> Axes:
     stack: list[tuple[str, str, float, list[str]]] = []  # name, colour, height, and what is said of each part
     for name, (colour, keys) in (ABOVE | BELOW).items():
         values = [file[table][key] for table, key in (each.split(".") for each in keys)]
-        said = [f"{key} = {value:g}" for key, value in zip(keys, values, strict=True)]
-        stack.append((name, colour, ROW * len(keys) + 4.0, said))
+        lines = [f"{key} = {value:g}" for key, value in zip(keys, values, strict=True)]
+        stack.append((name, colour, ROW * len(keys) + 4.0, lines))
     for place, layer in enumerate(file["skin"]["layer"]):
         name, thick = layer.pop("name"), layer.pop("thickness_mm")
-        said = [f"thickness_mm = {thick:g}{', …' * (place > 0)}"]
-        said += [f"{key} = {value:g}" for key, value in layer.items() if place == 0]
-        high, said = at(depth_mm + thick) - at(depth_mm), [f"skin.layer.{place}.{each}" for each in said]
-        stack.insert(len(ABOVE) + place, (name, ("#faf1e6", "#efdfcc")[place % 2], high, said))
+        lines = [f"thickness_mm = {thick:g}{', …' * (place > 0)}"]
+        lines += [f"{key} = {value:g}" for key, value in layer.items() if place == 0]
+        high, lines = at(depth_mm + thick) - at(depth_mm), [f"skin.layer.{place}.{each}" for each in lines]
+        stack.insert(len(ABOVE) + place, (name, ("#faf1e6", "#efdfcc")[place % 2], high, lines))
         depth_mm += thick
     rows: list[tuple[float, str, str]] = []  # where a key belongs, what it says, the colour of its line
-    for name, colour, high, said in stack:
+    for name, colour, high, lines in stack:
         axes.fill_between((0.0, right), top, top + high, fc=colour, ec="0.15", lw=0.6)
         axes.text(right / 2.0, top + high / 2.0, name, ha="center", va="center", fontsize=LETTERS)
-        rows += [(top + high / 2.0 + ROW * (k - len(said) / 2.0 + 0.5), each, "0.45") for k, each in enumerate(said)]
+        rows += [(top + high / 2.0 + ROW * (k - len(lines) / 2.0 + 0.5), each, "0.45") for k, each in enumerate(lines)]
         if name == LEGS:
             legs = right * (np.arange(8) + 0.5) / 8.0
             axes.bar(legs, high, right / 11.0, top, color=["0.94", "0.85"] * 4, zorder=0.0)

@@ -72,25 +72,25 @@ def compare_command(
     if kind == "rig":
         icons = pick(read_set([file or DEFAULT_SET]), icon or (DEFAULT_ICON if file is None else None))
         one, other = (load_rig(name, rig.changes, named=True) for name in both)
-        made = [_played(each.name, (each, each), (one, other), both) for each in icons]
+        compared = [_played(each.name, (each, each), (one, other), both) for each in icons]
     elif kind == "icon":
         one_icon, other_icon = _named(first, "A"), _named(second, "B")
         used = rig.load(one_icon, first)
-        made = [_played("", (one_icon, other_icon), (used, used), both)]
+        compared = [_played("", (one_icon, other_icon), (used, used), both)]
     elif kind == "set":
-        made = _sets(both, icon, rig)
-        if not made:
+        compared = _sets(both, icon, rig)
+        if not compared:
             if figure.figure is not None:
                 raise usage("draws icons that both sets have, and these have none in common", "--figure")
             show(_as_wholes(both, rig))
             return
     else:
-        made = [_tables(both, icon, theirs_of(column), align)]
-    figure.write(lambda: compare_figure([(each.title, each.both) for each in made], figure.look.across(3)))
-    if not any(differences(each.both)["largest"].any() for each in made):
+        compared = [_tables(both, icon, theirs_of(column), align)]
+    figure.write(lambda: compare_figure([(each.title, each.both) for each in compared], figure.look.across(3)))
+    if not any(differences(each.both)["largest"].any() for each in compared):
         typer.echo(f"{first} and {second} play alike: no difference in any curve")
         return
-    show([block for each in made for block in compare_report(each)])
+    show([block for each in compared for block in compare_report(each)])
 
 
 def kind_of(text: str, option: str) -> str:

@@ -117,26 +117,26 @@ class Request:
 
     def best(self, count: int | None, must: Sequence[str] | None, edits: bool) -> tuple[list[Block], str]:
         """The best `count` icons as they are, or all (None), edited; and why no set was written."""
-        made = chosen(self.icons, self.rig, count, self.objective, must, edits, self.how)
-        missed = made.goal is not None and not made.goal.met
+        result = chosen(self.icons, self.rig, count, self.objective, must, edits, self.how)
+        missed = result.goal is not None and not result.goal.met
         refused, written = "", self.written
         for path in self.outputs:
             if path.suffix != ".cue":
-                write_text(made.to_json() + "\n", path)
-            elif made.choice is not None:
-                write_text(str(set_to_write(self.icons, made.choice.icons, self.rig)), path, MISSES * missed)
-            elif made.edited is not None:
-                edited = _edited(self.icons, made.edited, self.rig)
-                write_text(str(edited), path, MISSES * (missed and made.way is None))
+                write_text(result.to_json() + "\n", path)
+            elif result.choice is not None:
+                write_text(str(set_to_write(self.icons, result.choice.icons, self.rig)), path, MISSES * missed)
+            elif result.edited is not None:
+                edited = _edited(self.icons, result.edited, self.rig)
+                write_text(str(edited), path, MISSES * (missed and result.way is None))
             else:
                 why = "no edit that was tried meets the goal" if missed else "there is no edit to write"
                 refused, written = f"{why}, and no set was written", None
         if self.figure.figure is not None:
-            self.figure.write_set(made.ranking if made.choice is None else self.alone(made.choice.icons))
-        following = after_choice(made, self.command, written)
-        if made.choice is None:
-            return edits_report(made, self.icons.title, following), refused
-        return rank_report(made, self.icons.title, cures(made.ranking, self.icons), following), refused
+            self.figure.write_set(result.ranking if result.choice is None else self.alone(result.choice.icons))
+        following = after_choice(result, self.command, written)
+        if result.choice is None:
+            return edits_report(result, self.icons.title, following), refused
+        return rank_report(result, self.icons.title, cures(result.ranking, self.icons), following), refused
 
     def alone(self, names: Sequence[str]) -> Ranking:
         """Rank the chosen icons as the set that they are then: nobody names an icon that is not in it."""

@@ -288,16 +288,16 @@ def read_set(files: Sequence[str]) -> IconSet:
     sets = [read_cue(file) for file in files]
     joined = sets[0]
     owner: dict[str, str] = {}
-    for file, each in zip(files, sets, strict=True) if len(sets) > 1 else ():
-        if each.context != joined.context:
+    for file, icons in zip(files, sets, strict=True) if len(sets) > 1 else ():
+        if icons.context != joined.context:
             keys = ("site", "control", "baseline_C", "elements")
-            both = [(key.removesuffix("_C"), getattr(each.context, key), getattr(joined.context, key)) for key in keys]
+            both = [(key.removesuffix("_C"), getattr(icons.context, key), getattr(joined.context, key)) for key in keys]
             told = ", ".join(f"{key} {one}, not {other}" for key, one, other in both if one != other)
             raise JoinError(
                 f"{file} has {told} as in {files[0]}, and one set has these in common: put the icons into one file, "
                 "or take each file by itself"
             )
-        members: tuple[Icon | SpatialIcon, ...] = each.spatial or tuple(each)
+        members: tuple[Icon | SpatialIcon, ...] = icons.spatial or tuple(icons)
         for icon in members:
             if icon.name in owner:
                 raise JoinError(
@@ -306,10 +306,10 @@ def read_set(files: Sequence[str]) -> IconSet:
                 )
             owner[icon.name] = file
     if len(sets) > 1:
-        titles = [each.title or Path(file).name for file, each in zip(files, sets, strict=True)]
-        title = "; ".join(titles) if any(each.title for each in sets) else ""
-        entries = tuple(entry for each in sets for entry in each.entries)
-        spatial = tuple(icon for each in sets for icon in each.spatial)
+        titles = [icons.title or Path(file).name for file, icons in zip(files, sets, strict=True)]
+        title = "; ".join(titles) if any(icons.title for icons in sets) else ""
+        entries = tuple(entry for icons in sets for entry in icons.entries)
+        spatial = tuple(icon for icons in sets for icon in icons.spatial)
         joined = replace(joined, title=title, entries=entries, spatial=spatial)
     return joined
 

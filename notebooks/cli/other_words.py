@@ -53,11 +53,11 @@ def option_meant(typed: str, command: Any, program: Any) -> str:
     """
     from thermicon.circuit.rig.rigfile import rig_keys
 
-    word, known = typed.lstrip("-"), [(name, each) for each in command.params for name in each.opts]
-    options = {name[2:]: each for name, each in known if name.startswith("--")}
-    having = [name for name, other in program.commands.items() if any(typed in each.opts for each in other.params)]
-    also = {name: f"{each.metavar} {' '.join(str(each.help).split()[:FIRST])}" for name, each in options.items()}
-    outputs = [each.opts[0] for each in command.params if str(each.metavar or "").startswith("OUT")]
+    word, known = typed.lstrip("-"), [(name, option) for option in command.params for name in option.opts]
+    options = {name[2:]: option for name, option in known if name.startswith("--")}
+    having = [name for name, other in program.commands.items() if any(typed in option.opts for option in other.params)]
+    also = {name: f"{option.metavar} {' '.join(str(option.help).split()[:FIRST])}" for name, option in options.items()}
+    outputs = [option.opts[0] for option in command.params if str(option.metavar or "").startswith("OUT")]
     near = proposals(word, [*options, *(OUTPUTS if outputs else ())], cutoff=0.6, also=also)
     if near and near[0] in OUTPUTS and near[0] not in options:
         return f"; what it writes is named by {', '.join(outputs)}"

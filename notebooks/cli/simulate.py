@@ -207,10 +207,10 @@ def simulate_file(
     _check_outputs(file, output, pictures)
     traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
     near = [None if one.reachable else nearest_reachable(each, rig) for each, one in zip(icons, traces, strict=True)]
-    safe = tell(traces, output, [None if found is None else found.sentence for found in near])
+    safe = tell(traces, output, [None if fit is None else fit.sentence for fit in near])
     if output is None:
         lost = [str(one.icon) for one, kept in zip(traces, safe, strict=True) if not (one.reachable and kept)]
-        cured = [str(one.icon) for one, found in zip(traces, near, strict=True) if found is not None]
+        cured = [str(one.icon) for one, fit in zip(traces, near, strict=True) if fit is not None]
         typer.echo(f"Next: {after_simulating(cured, lost, commands([file], asked, CrowdOptions()))}")
     for each, picture in zip(icons, pictures, strict=True):
         if picture.figure or picture.film:

@@ -55,8 +55,8 @@ def designs_table(found: ExperimentPlan) -> Grid:
     headings = [f"{each} trials" for each in trials]
     rows = []
     for people in sorted({each.participants for each in found.designs}):
-        own = {each.trials: each for each in found.designs if each.participants == people}
-        rows.append((str(people), *(_cell(found, own[each]) for each in trials)))
+        row = {each.trials: each for each in found.designs if each.participants == people}
+        rows.append((str(people), *(_cell(found, row[each]) for each in trials)))
     return grid(("participants", *headings), rows, headings)
 
 

@@ -36,7 +36,7 @@ def sets_report(names: tuple[str, str], sets: tuple[Ranking, Ranking]) -> list[B
             for each in sets
             if each.new_laboratory is not None
         )
-        rows.insert(3, (f"{percent(REACHED_BY)} of people", *(f"from {percent(float(each))}" for each in reached)))
+        rows.insert(3, (f"{percent(REACHED_BY)} of people", *(f"from {percent(float(level))}" for level in reached)))
         share = one.new_laboratory.ahead_of(other.new_laboratory)
         better = names[0] if share >= 0.5 else names[1]
         points = 100.0 * abs(one.felt_and_named - other.felt_and_named)

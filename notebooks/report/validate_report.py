@@ -76,9 +76,9 @@ def _share(one: JudgedRow) -> str:
 
 def summary_text() -> str:
     """State how many left-out rows are covered, and how wide the intervals are."""
-    known, spreads = judging_predictions(), [each for each in load_predictions() if each.row.kind == "spread"]
-    inside, rows = sum(each.covered for each in known), len(known)
-    logs = sum(each.log for each in known)
+    known, spreads = judging_predictions(), [case for case in load_predictions() if case.row.kind == "spread"]
+    inside, rows = sum(case.covered for case in known), len(known)
+    logs = sum(case.log for case in known)
     factor, share = (median_half_width(log=log) for log in (True, False))
     return (
         f"Left out with its experiment, {inside} of {rows} published numbers lie inside the 95 % interval of their "
@@ -86,7 +86,7 @@ def summary_text() -> str:
         f"rows on a log scale, ±{100 * share:.0f} % of the published number for the others. Fitted numbers do "
         "not test prediction. Intervals of published numbers contain their standard error and the discrepancy that "
         "the inference allows a model of this kind; that of spreads was chosen on such rows, so that they do not count "
-        f"({sum(each.covered for each in spreads)} of {len(spreads)} inside)."
+        f"({sum(case.covered for case in spreads)} of {len(spreads)} inside)."
     )
 
 

@@ -116,24 +116,24 @@ def scene(
     reading = read_text(text)
     names, count, drawing = ((), 0, None) if before is None else (before.names, before.count, before.drawing)
     person = Observer.load() if observer is None else observer
-    made = Scene(text, rig, wanted, names, count, reading.troubles, _once(notes), True, drawing)
+    shown = Scene(text, rig, wanted, names, count, reading.troubles, _once(notes), True, drawing)
     if reading.icons is None:
-        return _counted(made, reading.more)
+        return _counted(shown, reading.more)
     chosen, remarks = _chosen(reading, wanted, before)
     count, names = len(reading.icons), reading.names
     if count > MOST_NAMES:
         remarks.append(f"{count:,} icons; the first {MOST_NAMES} are listed, Workbench(…, icon=NAME) shows any other")
         names = names if chosen.name in names else (*names, chosen.name)
-    made = replace(made, icon=chosen.name, names=names, count=count, notes=_once([*notes, *remarks]))
+    shown = replace(shown, icon=chosen.name, names=names, count=count, notes=_once([*notes, *remarks]))
     try:
         drawing = draw(chosen, rig, person, reading)
     except CueErrors as wrong:  # with the rest of this rig a target lies on the wrong side
-        return _counted(replace(made, troubles=tuple(map(trouble_of, wrong.errors))), wrong.more)
+        return _counted(replace(shown, troubles=tuple(map(trouble_of, wrong.errors))), wrong.more)
     except (InputError, ValueError, ArithmeticError) as wrong:
         told = (f"not drawn: {line}" for line in str(wrong).splitlines()[:3])
-        return replace(made, notes=_once([*made.notes, *told]))
+        return replace(shown, notes=_once([*shown.notes, *told]))
     told_on = _notes_on(drawing, reading, rig)
-    return replace(made, notes=_once([*made.notes, *told_on]), stale=False, drawing=drawing)
+    return replace(shown, notes=_once([*shown.notes, *told_on]), stale=False, drawing=drawing)
 
 
 def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:

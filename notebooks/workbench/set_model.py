@@ -150,18 +150,18 @@ def overlay_frame(made: RankedSet, nominal: Observer, a: str, b: str) -> CanvasF
     reading = read_text(made.text)
     icons = {icon.name: icon for icon in made.icons}
     drawn = {name: draw(icons[name], made.rig, nominal, reading) for name in dict.fromkeys((a, b))}
-    clock = max((each.trace.time_s for each in drawn.values()), key=lambda time_s: time_s[-1])
+    clock = max((view.trace.time_s for view in drawn.values()), key=lambda time_s: time_s[-1])
     clock = clock[:: -(-len(clock) // MOST_POINTS)]
     buffers: list[Any] = []
     panels = []
     for key, title, height, role in PANELS:
         series = []
-        for (name, each), (dash, width) in zip(drawn.items(), STYLES, strict=False):
-            values = {"skin": each.trace.skin_C, "cold": each.percept.psi_cold, "warm": each.percept.psi_warm}[key]
+        for (name, view), (dash, width) in zip(drawn.items(), STYLES, strict=False):
+            values = {"skin": view.trace.skin_C, "cold": view.percept.psi_cold, "warm": view.percept.psi_warm}[key]
             about = {"key": f"{key} {name}", "label": name, "buffer": len(buffers), "role": role}
             series.append({**about, "dash": dash, "width": width, "step": False})
-            rows = min(len(values), len(each.trace.time_s))
-            on_clock = np.interp(clock, each.trace.time_s[:rows], values[:rows], right=np.nan)
+            rows = min(len(values), len(view.trace.time_s))
+            on_clock = np.interp(clock, view.trace.time_s[:rows], values[:rows], right=np.nan)
             buffers.append(on_clock.astype(np.float32))
         felt = key != "skin"
         about = {"digits": 1 if felt else 2, "terms": terms_of("d′", "sensation ψ") if felt else []}

@@ -61,26 +61,26 @@ class SetView(LiveView[SetRequest]):
         self.heat.on_message(lambda message: self._safely(lambda: self._cell(message)))
         names = ("scores", "status", "choice", "versions", "table", "notes", "pair", "edit_text", "why", "map")
         self.said = {name: widgets.HTML() for name in (*names, "caveat")}
-        said = self.said
+        html = self.said
         self.apply = widgets.Button(description="Apply edit", disabled=True, layout={"width": "100px"})
         self.apply.on_click(lambda _: self._safely(self.apply_edit))
         self.count = widgets.BoundedIntText(value=3, min=2, description="best", layout={"width": "96px"})
         self.count.style.description_width = "32px"
         choose = button("Choose", "as thermicon improve --choose does", lambda: self._safely(self.choose_best))
         ask = widgets.Box([self.count, choose]).add_class("thermicon-ask")
-        top = _row(said["scores"], said["status"], ask).add_class("thermicon-top")
-        table = self._table = widgets.VBox([said["table"]]).add_class("thermicon-side")
+        top = _row(html["scores"], html["status"], ask).add_class("thermicon-top")
+        table = self._table = widgets.VBox([html["table"]]).add_class("thermicon-side")
         self._maps = widgets.VBox([self.heat], layout={"flex": WIDE, "min_width": "0"})
         overlay = widgets.VBox([self.overlay], layout={"flex": "3 1 400px", "min_width": "0"})
-        reasons = widgets.VBox([said["pair"], said["edit_text"], self.apply, said["why"]], layout={"flex": "3 1 300px"})
-        placed = widgets.VBox([said["map"]], layout={"flex": "2 1 270px", "min_width": "0"})
+        reasons = widgets.VBox([html["pair"], html["edit_text"], self.apply, html["why"]], layout={"flex": "3 1 300px"})
+        placed = widgets.VBox([html["map"]], layout={"flex": "2 1 270px", "min_width": "0"})
         self._below = _row(overlay, reasons, placed).add_class("thermicon-pair")
-        self.body = widgets.VBox([_row(table, self._maps), said["notes"], self._below, said["caveat"]])
-        said["caveat"].add_class("thermicon-safety")
-        said["choice"].add_class("thermicon-choice").layout.display = "none"
-        self.box = widgets.VBox([top, said["choice"], said["versions"], self.body]).add_class("thermicon-set")
+        self.body = widgets.VBox([_row(table, self._maps), html["notes"], self._below, html["caveat"]])
+        html["caveat"].add_class("thermicon-safety")
+        html["choice"].add_class("thermicon-choice").layout.display = "none"
+        self.box = widgets.VBox([top, html["choice"], html["versions"], self.body]).add_class("thermicon-set")
         self.body.layout.display = "none"
-        self.stale_parts = self.body, said["scores"], said["choice"]
+        self.stale_parts = self.body, html["scores"], html["choice"]
         self._say("the set is ranked when this tab opens")
 
     def _mark_outdated(self, request: SetRequest) -> None:

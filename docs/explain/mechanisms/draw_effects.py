@@ -53,16 +53,16 @@ def plot_onset_stages(stages: Sequence[OnsetStages], ax: Axes | None = None) -> 
     """Draw one bar an icon, divided by stage; a diamond marks the onset with conduction of the leg."""
     axes = new_axes(ax, (6.2, 0.42 * len(stages) + 1.5))
     places = np.arange(len(stages))
-    colours = [COOL if each.channel == "cold" else WARM for each in stages]
+    colours = [COOL if stage.channel == "cold" else WARM for stage in stages]
     start = np.zeros(len(stages))
     for attribute, _, alpha, hatch in STAGES:
-        width = np.array([getattr(each, attribute) for each in stages])
+        width = np.array([getattr(stage, attribute) for stage in stages])
         axes.barh(places, width, left=start, color=[(c, alpha) for c in colours], hatch=hatch, ec="w", lw=0.8)
         start = start + width
-    axes.plot([each.leg_s for each in stages], places, ls="", marker="D", ms=5, mfc="w", mec="#222222")
-    axes.set_yticks(places, [f"{each.icon}, {each.onset_s:.2f} s" for each in stages])
+    axes.plot([stage.leg_s for stage in stages], places, ls="", marker="D", ms=5, mfc="w", mec="#222222")
+    axes.set_yticks(places, [f"{stage.icon}, {stage.onset_s:.2f} s" for stage in stages])
     axes.invert_yaxis()
-    axes.set_xlim(0.0, 1.05 * max(max(each.leg_s, each.onset_s) for each in stages))
+    axes.set_xlim(0.0, 1.05 * max(max(stage.leg_s, stage.onset_s) for stage in stages))
     axes.set_xlabel("time from the start of the cue (s)")
     axes.set_title("Onset of a nominal person (blue: cold, orange: warm)", loc="left", fontsize="medium")
     axes.spines[["top", "right", "left"]].set_visible(False)
