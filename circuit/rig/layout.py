@@ -215,7 +215,7 @@ class Layout:
                 if element.place_m is not None and other.place_m is not None:
                     apart_mm = 1e3 * dist(element.place_m, other.place_m)
                     close.append(unusual("beside", names=f"{element.name} and {other.name}", apart=apart_mm))
-        return tuple(each.text for each in (*close, *unusual_values(told, "layout")))
+        return tuple(by_name(fault.text, told) for fault in (*close, *unusual_values(told, "layout")))
 
     @property
     def alone(self) -> Rig:
