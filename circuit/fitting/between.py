@@ -11,9 +11,9 @@ make a whole one, within this share, and where they are so close that it does no
 STEEP, REPEATS = 0.05, 10
 """Rows that repeat count between steps of at least this share of the largest; so many are no chance."""
 
-MANY_SIZES, CHANCE_SDS = 20, 3.0
-"""Steps of more sizes are noise, of which rounding lets some repeat: half as many as differ by the rounding, give or
-take three standard deviations."""
+MANY_SIZES, CHANCE_ROOTS = 20, 6.0
+"""Steps of more sizes are noise. Rounding lets some of them repeat: half as many as differ by the rounding, give or take
+so many times the square root of how many repeat."""
 
 SMOOTH_S = 0.2
 """Over so long a display's noise is averaged where its rate is asked."""
@@ -38,7 +38,7 @@ def tells_all(time_s: Array, drive: Array, update_Hz: float) -> bool:
     sizes, counts = np.unique(np.round(steps[1:-1][steep[:-2] & steep[2:]], 9), return_counts=True)
     repeats = int(counts[0]) if sizes.size and sizes[0] == 0.0 else 0
     by_chance = 0.5 * counts[1] if len(sizes) > MANY_SIZES else 0.0
-    if repeats - by_chance >= max(REPEATS, CHANCE_SDS * np.sqrt(repeats)):
+    if repeats - by_chance >= max(REPEATS, CHANCE_ROOTS * np.sqrt(repeats)):
         return False
     if share >= 1.0 - WHOLE:
         return share <= MOST_UPDATES

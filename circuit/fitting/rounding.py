@@ -20,9 +20,9 @@ from .whiten import responses
 UNIFORM_SD = 12.0**-0.5
 """Standard deviation of what was rounded, in steps of the rounding."""
 
-FINEST_DECIMALS, WHOLE, UNEVEN = 6, 1e-3, 0.1
-"""Steps of a clock are told to a µs; even rows, of which some are missing, or with one rate after another, differ by
-whole multiples of the least step, to within this share of it, and seldom from the step before."""
+FINEST_S, WHOLE, UNEVEN = 1e-6, 1e-3, 0.1
+"""Steps of a clock are told to a µs. Even rows have steps of whole multiples of the least, to within this share of it,
+and few of them differ from the step before: some rows may be missing, and the rate may change."""
 
 FEWEST_LEVELS = 50
 """Fewer different values were set, not rounded: a drive of steps has them as they are."""
@@ -40,7 +40,7 @@ def clock_step_s(time_s: Array) -> float:
     >>> [round(clock_step_s(np.array(times)), 6) for times in ([0, 0.01, 0.02], [0, 0.01, 0.021], [0, 0.02, 0.05])]
     [0.0, 0.001, 0.01]
     """
-    steps_s = np.round(np.diff(time_s), FINEST_DECIMALS)
+    steps_s = np.maximum(np.round(np.diff(time_s) / FINEST_S), 1.0) * FINEST_S
     sizes_s = np.unique(steps_s)
     multiples = sizes_s / sizes_s[0]
     whole = np.abs(multiples - np.round(multiples)).max() < WHOLE

@@ -129,7 +129,7 @@ def read_layout_table(document: Mapping[str, Any], where: str) -> LayoutTable:
 
 
 def by_name(told: str, document: Mapping[str, Any]) -> str:
-    """What is told of a key such as `element.1.gap_mm` as told of the element, or sink, of that name.
+    """Name the element, or the sink, in a message about a key such as `element.1.gap_mm`.
 
     >>> by_name("element.0.gap_mm = 9000 mm: must be at most 5000 mm", {"element": [{"name": "left"}]})
     'left: gap_mm = 9000 mm: must be at most 5000 mm'

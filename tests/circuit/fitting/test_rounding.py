@@ -62,7 +62,8 @@ def test_rows_that_are_even_and_levels_that_were_set_are_not_rounded() -> None:
     even_s = np.arange(3000) * 0.01
     missing_s = np.delete(even_s, [500, 501, 900])
     two_rates_s = np.append(even_s[:1000:10], even_s[1000:])
-    for time_s in (even_s, missing_s, two_rates_s, even_s + 1.7e9):
+    twice_s = np.insert(even_s, 501, 5.0 + 1e-7)
+    for time_s in (even_s, missing_s, two_rates_s, even_s + 1.7e9, twice_s):
         assert clock_step_s(time_s) == 0.0
     drifting_s = np.floor(np.arange(3000) * 10.37) / 1000
     assert clock_step_s(drifting_s) == pytest.approx(1e-3)
