@@ -12,8 +12,8 @@ STEEP, REPEATS = 0.05, 10
 """Rows that repeat count between steps of at least this share of the largest; so many are no chance."""
 
 MANY_SIZES, CHANCE_ROOTS = 20, 6.0
-"""Steps of more sizes are noise. Rounding lets some of them repeat: half as many as differ by the rounding, give or take
-so many times the square root of how many repeat."""
+"""Steps of more sizes are noise. Rounding lets some of them repeat: half as many as differ by the rounding, give or
+take so many times the square root of how many repeat."""
 
 SMOOTH_S = 0.2
 """Over so long a display's noise is averaged where its rate is asked."""
